@@ -1,0 +1,2 @@
+//! umbra
+fn main() {}
