@@ -1,1 +1,11 @@
-//! umbra
+//! Does light reach this point? Exact and fast occlusion queries for triangle scenes.
+//!
+//! One direction of dependence, ground floor first:
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`geometry`] | rays, triangles, boxes, parametric surfaces |
+//! | [`exact`] | certified predicates and the oracle |
+
+pub mod exact;
+pub mod geometry;

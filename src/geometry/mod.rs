@@ -1,0 +1,9 @@
+//! Rays, triangles, boxes: the bits every engine is given.
+
+mod bounds;
+mod ray;
+mod triangles;
+
+pub use bounds::Bounds;
+pub use ray::Ray;
+pub use triangles::{Triangle, TriangleId, Triangles};
