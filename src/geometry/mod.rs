@@ -2,6 +2,7 @@
 
 mod bounds;
 mod ray;
+pub mod surface;
 mod triangles;
 
 pub use bounds::Bounds;
