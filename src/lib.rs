@@ -9,7 +9,10 @@
 //! | [`occlusion`] | the backends: grid, Embree, obvhs' trees, brute force |
 //! | [`scene`] | triangles with materials, lights, a camera; loaders; built-in scenes |
 
+pub mod cli;
 pub mod exact;
 pub mod geometry;
 pub mod occlusion;
+pub mod render;
 pub mod scene;
+pub mod shadow;

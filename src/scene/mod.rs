@@ -79,3 +79,11 @@ impl Scene {
         (self.triangles.opaque_count() as usize) < self.triangles.len()
     }
 }
+
+/// Loads a scene.
+///
+/// # Errors
+/// If there is none of that name.
+pub fn load(name: &str) -> Result<Scene, SceneError> {
+    builtin::draft_at(name, 1.0)?.finish()
+}
