@@ -388,48 +388,6 @@ const _: () = {
         "Offset of field: RTCHit16::instPrimID",
     ][::core::mem::offset_of!(RTCHit16, instPrimID) - 512usize];
 };
-#[repr(C)]
-#[repr(align(16))]
-#[derive(Debug, Copy, Clone)]
-pub struct RTCBounds {
-    pub lower_x: f32,
-    pub lower_y: f32,
-    pub lower_z: f32,
-    pub align0: f32,
-    pub upper_x: f32,
-    pub upper_y: f32,
-    pub upper_z: f32,
-    pub align1: f32,
-}
-#[allow(clippy::unnecessary_operation, clippy::identity_op)]
-const _: () = {
-    ["Size of RTCBounds"][::core::mem::size_of::<RTCBounds>() - 32usize];
-    ["Alignment of RTCBounds"][::core::mem::align_of::<RTCBounds>() - 16usize];
-    [
-        "Offset of field: RTCBounds::lower_x",
-    ][::core::mem::offset_of!(RTCBounds, lower_x) - 0usize];
-    [
-        "Offset of field: RTCBounds::lower_y",
-    ][::core::mem::offset_of!(RTCBounds, lower_y) - 4usize];
-    [
-        "Offset of field: RTCBounds::lower_z",
-    ][::core::mem::offset_of!(RTCBounds, lower_z) - 8usize];
-    [
-        "Offset of field: RTCBounds::align0",
-    ][::core::mem::offset_of!(RTCBounds, align0) - 12usize];
-    [
-        "Offset of field: RTCBounds::upper_x",
-    ][::core::mem::offset_of!(RTCBounds, upper_x) - 16usize];
-    [
-        "Offset of field: RTCBounds::upper_y",
-    ][::core::mem::offset_of!(RTCBounds, upper_y) - 20usize];
-    [
-        "Offset of field: RTCBounds::upper_z",
-    ][::core::mem::offset_of!(RTCBounds, upper_z) - 24usize];
-    [
-        "Offset of field: RTCBounds::align1",
-    ][::core::mem::offset_of!(RTCBounds, align1) - 28usize];
-};
 impl RTCDeviceProperty {
     pub const RTC_DEVICE_PROPERTY_VERSION: RTCDeviceProperty = RTCDeviceProperty(0);
     pub const RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(
@@ -748,7 +706,6 @@ pub struct Embree {
         geometry: RTCGeometry,
     ) -> ::core::ffi::c_uint,
     pub rtcSetSceneFlags: unsafe extern "C" fn(scene: RTCScene, flags: RTCSceneFlags),
-    pub rtcGetSceneFlags: unsafe extern "C" fn(scene: RTCScene) -> RTCSceneFlags,
     pub rtcSetSceneBuildQuality: unsafe extern "C" fn(
         scene: RTCScene,
         quality: RTCBuildQuality,
@@ -759,10 +716,6 @@ pub struct Embree {
         ptr: *mut ::core::ffi::c_void,
     ),
     pub rtcCommitScene: unsafe extern "C" fn(scene: RTCScene),
-    pub rtcGetSceneBounds: unsafe extern "C" fn(
-        scene: RTCScene,
-        bounds_o: *mut RTCBounds,
-    ),
     pub rtcIntersect1: unsafe extern "C" fn(
         scene: RTCScene,
         rayhit: *mut RTCRayHit,
@@ -840,8 +793,6 @@ impl Embree {
             .map(|sym| *sym)?;
         let rtcSetSceneFlags = unsafe { __library.get(b"rtcSetSceneFlags\0") }
             .map(|sym| *sym)?;
-        let rtcGetSceneFlags = unsafe { __library.get(b"rtcGetSceneFlags\0") }
-            .map(|sym| *sym)?;
         let rtcSetSceneBuildQuality = unsafe {
             __library.get(b"rtcSetSceneBuildQuality\0")
         }
@@ -851,8 +802,6 @@ impl Embree {
         }
             .map(|sym| *sym)?;
         let rtcCommitScene = unsafe { __library.get(b"rtcCommitScene\0") }
-            .map(|sym| *sym)?;
-        let rtcGetSceneBounds = unsafe { __library.get(b"rtcGetSceneBounds\0") }
             .map(|sym| *sym)?;
         let rtcIntersect1 = unsafe { __library.get(b"rtcIntersect1\0") }
             .map(|sym| *sym)?;
@@ -878,11 +827,9 @@ impl Embree {
             rtcReleaseScene,
             rtcAttachGeometry,
             rtcSetSceneFlags,
-            rtcGetSceneFlags,
             rtcSetSceneBuildQuality,
             rtcSetSceneProgressMonitorFunction,
             rtcCommitScene,
-            rtcGetSceneBounds,
             rtcIntersect1,
             rtcOccluded1,
             rtcOccluded4,
@@ -981,9 +928,6 @@ impl Embree {
     pub unsafe fn rtcSetSceneFlags(&self, scene: RTCScene, flags: RTCSceneFlags) {
         unsafe { (self.rtcSetSceneFlags)(scene, flags) }
     }
-    pub unsafe fn rtcGetSceneFlags(&self, scene: RTCScene) -> RTCSceneFlags {
-        unsafe { (self.rtcGetSceneFlags)(scene) }
-    }
     pub unsafe fn rtcSetSceneBuildQuality(
         &self,
         scene: RTCScene,
@@ -1001,9 +945,6 @@ impl Embree {
     }
     pub unsafe fn rtcCommitScene(&self, scene: RTCScene) {
         unsafe { (self.rtcCommitScene)(scene) }
-    }
-    pub unsafe fn rtcGetSceneBounds(&self, scene: RTCScene, bounds_o: *mut RTCBounds) {
-        unsafe { (self.rtcGetSceneBounds)(scene, bounds_o) }
     }
     pub unsafe fn rtcIntersect1(
         &self,

@@ -32,6 +32,19 @@ pub struct Candidate {
     pub origin: &'static str,
 }
 
+impl Candidate {
+    /// Whether the system is to search for it.
+    pub fn is_bare(&self) -> bool {
+        self.path.components().count() == 1
+    }
+
+    /// Whether the loader finds and loads it at all.
+    pub fn is_loadable(&self) -> bool {
+        // SAFETY: a library of this name is taken to be Embree. It is unloaded only if nothing of it was used.
+        unsafe { open(&self.path) }.is_ok()
+    }
+}
+
 /// Where to look, in order. Taken as values so that every case can be tried without touching the environment.
 #[derive(Debug, Clone, Default)]
 pub struct Surroundings {
