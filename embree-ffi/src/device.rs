@@ -1,11 +1,11 @@
 //! An Embree device: the choice of kernels and threads, and the owner of all memory.
 
 use std::{
-    any::Any,
     cell::RefCell,
     ffi::{CStr, CString, c_char, c_void},
     fmt,
     ops::ControlFlow,
+    panic::resume_unwind,
     ptr::null_mut,
     sync::Arc,
 };
@@ -13,7 +13,7 @@ use std::{
 use crate::{
     Error, ErrorCode, Library,
     bindings::{RTCDevice, RTCDeviceProperty, RTCError},
-    monitor::{MemoryMonitor, watch_memory},
+    monitor::{Memory, MemoryMonitor, watch_memory},
 };
 
 /// The instruction set whose kernels are to be used. It decides speed and, in the last bits, the arithmetic:
@@ -98,7 +98,7 @@ impl DeviceConfig {
     /// Be told of every allocation (bytes > 0) and release (bytes < 0), from any thread, several at once.
     ///
     /// [`ControlFlow::Break`] on an allocation cancels the build at hand with [`ErrorCode::OutOfMemory`]; on a release it
-    /// means nothing. A panic cancels likewise, and goes on from the `commit` that was cancelled.
+    /// means nothing. A panic cancels likewise, and goes on from the call that was cancelled.
     pub fn memory_monitor(mut self, monitor: impl Fn(isize) -> ControlFlow<()> + Send + Sync + 'static) -> Self {
         self.memory_monitor = Some(Box::new(monitor));
         self
@@ -123,7 +123,7 @@ pub struct Device(Arc<DeviceOwner>);
 struct DeviceOwner {
     library: &'static Library,
     raw: RTCDevice,
-    memory: Box<crate::monitor::Memory>,
+    memory: Box<Memory>,
 }
 
 // SAFETY: Embree's devices may be used and released from any thread, and several at once.
@@ -150,7 +150,7 @@ impl Device {
         if raw.is_null() {
             return Err(creation_error(library));
         }
-        let memory = Box::new(crate::monitor::Memory::new(config.memory_monitor));
+        let memory = Box::new(Memory::new(config.memory_monitor));
         // SAFETY: the device is alive; `memory` has its own place on the heap until after the device is gone.
         unsafe {
             library.api.rtcSetDeviceErrorFunction(raw, Some(remember_message), null_mut());
@@ -189,20 +189,18 @@ impl Device {
         self.0.raw
     }
 
-    /// The first error this thread met on this device since the last look.
+    /// The first error this thread met on this device since the last look. Goes on with a memory monitor's panic.
     pub(crate) fn take_error(&self) -> Result<(), Error> {
         // SAFETY: the device is alive.
         let code = unsafe { self.0.library.api.rtcGetDeviceError(self.0.raw) };
         let message = MESSAGE.take();
+        if let Some(payload) = self.0.memory.take_panic() {
+            resume_unwind(payload);
+        }
         match code {
             RTCError::RTC_ERROR_NONE => Ok(()),
             code => Err(Error::Embree { code: ErrorCode::from_raw(code), message }),
         }
-    }
-
-    /// What a memory monitor panicked with, if one did.
-    pub(crate) fn take_panic(&self) -> Option<Box<dyn Any + Send>> {
-        self.0.memory.take_panic()
     }
 }
 

@@ -171,8 +171,8 @@ impl SceneBuilder {
             api.rtcSetSceneProgressMonitorFunction(raw, Some(watch_progress), (&raw const progress).cast_mut().cast());
         }
         let outcome = self.build();
-        // SAFETY: if the scene is alive, it must not keep a pointer to `progress`.
         if let Ok(scene) = &outcome {
+            // SAFETY: the scene is alive and still ours alone; it must not keep a pointer to `progress`.
             unsafe { api.rtcSetSceneProgressMonitorFunction(scene.raw(), None, ptr::null_mut()) };
         }
         if let Some(payload) = progress.take_panic() {
@@ -185,11 +185,8 @@ impl SceneBuilder {
         let device = &self.owner.device;
         // SAFETY: the scene is alive and ours alone.
         unsafe { device.library().api.rtcCommitScene(self.owner.raw) };
-        let outcome = device.take_error();
-        if let Some(payload) = device.take_panic() {
-            resume_unwind(payload);
-        }
-        outcome.map(|()| Scene { owner: self.owner, packet_filters: self.options.packet_filters })
+        device.take_error()?;
+        Ok(Scene { owner: self.owner, packet_filters: self.options.packet_filters })
     }
 }
 
