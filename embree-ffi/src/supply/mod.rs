@@ -54,6 +54,10 @@ pub struct Surroundings {
     pub recorded: Option<std::path::PathBuf>,
     /// Why the build script settled on nothing.
     pub reason: Option<String>,
+    /// The fetched library, if it is there.
+    pub cached: Option<std::path::PathBuf>,
+    /// Names for the system's search.
+    pub system: &'static [&'static str],
 }
 
 impl Surroundings {
@@ -72,10 +76,8 @@ impl Surroundings {
                 found.push(Candidate { path: path.clone(), origin: if bare { "the system" } else { "the build" } });
             }
         }
-        if let Some(path) = Platform::of_this_program().and_then(|platform| cached_library(&platform)) {
-            found.push(Candidate { path, origin: "the cache" });
-        }
-        found.extend(SYSTEM_NAMES.iter().map(|name| Candidate { path: name.into(), origin: "the system" }));
+        found.extend(self.cached.iter().map(|path| Candidate { path: path.clone(), origin: "the cache" }));
+        found.extend(self.system.iter().map(|name| Candidate { path: name.into(), origin: "the system" }));
         Ok(found)
     }
 }
