@@ -1,0 +1,109 @@
+//! Triangles as every engine stores them.
+
+use glam::{Vec3, Vec3A};
+
+use super::Bounds;
+
+/// Index of a triangle in [`Triangles`].
+pub type TriangleId = u32;
+
+/// The three corners of one triangle.
+pub type Triangle = [Vec3; 3];
+
+/// The triangles of a scene, opaque ones first.
+///
+/// 48 bytes a triangle: three corners, each padded to 16 bytes so that it loads as one vector.
+/// Because the opaque triangles come first, "is this occluder opaque" is one comparison.
+#[derive(Clone, Debug, Default)]
+pub struct Triangles {
+    corners: Vec<[Vec3A; 3]>,
+    opaque: u32,
+}
+
+impl Triangles {
+    /// Stores `opaque` triangles, followed by `transparent` ones.
+    ///
+    /// # Panics
+    /// With more than `u32::MAX` triangles: the loaders refuse such files before.
+    #[must_use]
+    pub fn new(
+        opaque: impl IntoIterator<Item = Triangle>,
+        transparent: impl IntoIterator<Item = Triangle>,
+    ) -> Self {
+        let pad = |triangle: Triangle| triangle.map(Vec3A::from);
+        let mut corners: Vec<_> = opaque.into_iter().map(pad).collect();
+        let count = |n: usize| u32::try_from(n).expect("triangle count fits u32");
+        let opaque = count(corners.len());
+        corners.extend(transparent.into_iter().map(pad));
+        count(corners.len());
+        Self { corners, opaque }
+    }
+
+    /// Number of triangles.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.corners.is_empty()
+    }
+
+    /// Number of opaque triangles: those with an id below this.
+    #[must_use]
+    pub fn opaque_count(&self) -> u32 {
+        self.opaque
+    }
+
+    /// Whether the triangle blocks light entirely.
+    #[must_use]
+    #[inline]
+    pub fn is_opaque(&self, id: TriangleId) -> bool {
+        id < self.opaque
+    }
+
+    /// The corners of one triangle.
+    #[must_use]
+    #[inline]
+    pub fn get(&self, id: TriangleId) -> Triangle {
+        self.corners[id as usize].map(Vec3::from)
+    }
+
+    /// The corners of all triangles, padded for vector loads.
+    #[must_use]
+    #[inline]
+    pub fn corners(&self) -> &[[Vec3A; 3]] {
+        &self.corners
+    }
+
+    /// The box of one triangle.
+    #[must_use]
+    pub fn bounds_of(&self, id: TriangleId) -> Bounds {
+        Bounds::of(self.get(id))
+    }
+
+    /// The box of all triangles; `None` if there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds> {
+        let mut corners = self.corners.iter().flatten().copied();
+        let first = corners.next()?;
+        let (min, max) =
+            corners.fold((first, first), |(min, max), corner| (min.min(corner), max.max(corner)));
+        Some(Bounds { min: min.into(), max: max.into() })
+    }
+
+    /// Bytes held.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.corners.capacity() * size_of::<[Vec3A; 3]>()
+    }
+}
+
+impl FromIterator<Triangle> for Triangles {
+    /// All opaque.
+    fn from_iter<I: IntoIterator<Item = Triangle>>(triangles: I) -> Self {
+        Self::new(triangles, [])
+    }
+}
