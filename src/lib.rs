@@ -6,6 +6,8 @@
 //! | --- | --- |
 //! | [`geometry`] | rays, triangles, boxes, parametric surfaces |
 //! | [`exact`] | certified predicates and the oracle |
+//! | [`scene`] | triangles with materials, lights, a camera; loaders; built-in scenes |
 
 pub mod exact;
 pub mod geometry;
+pub mod scene;

@@ -1,0 +1,48 @@
+//! What can be wrong with a scene.
+
+use std::path::PathBuf;
+
+/// Why there is no scene. Each message says what, where, and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// The file could not be opened or read.
+    #[error("cannot read {path}: {reason}", path = path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        reason: std::io::Error,
+    },
+    /// The file was read but is not what its name says.
+    #[error("{path}: {problem}", path = path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, where, and what to do.
+        problem: String,
+    },
+    /// The name is neither a file nor a built-in scene.
+    #[error("no file and no built-in scene is called '{name}'; built-in scenes: {known}")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// The built-in names.
+        known: String,
+    },
+    /// Nothing is left to render.
+    #[error("{name}: no triangles{dropped}")]
+    Empty {
+        /// The scene.
+        name: String,
+        /// What was dropped, as text, or empty.
+        dropped: String,
+    },
+    /// More triangles than a 32-bit index holds, or than memory holds.
+    #[error("{name}: {problem}")]
+    TooLarge {
+        /// The scene.
+        name: String,
+        /// The estimate and the limit.
+        problem: String,
+    },
+}

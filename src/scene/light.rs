@@ -1,0 +1,103 @@
+//! Point, spot and directional lights.
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::Ray;
+
+/// A light without extent: its shadows are hard, one query decides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// Shines alike in all directions.
+    Point {
+        /// Where it is.
+        position: DVec3,
+        /// Radiant intensity; falls with the square of the distance.
+        intensity: Vec3,
+    },
+    /// Shines into a cone.
+    Spot {
+        /// Where it is.
+        position: DVec3,
+        /// Unit vector along the axis, away from the light.
+        axis: DVec3,
+        /// Radiant intensity on the axis.
+        intensity: Vec3,
+        /// Half angle of the fully lit cone, radians.
+        inner: f64,
+        /// Half angle beyond which it is dark, radians.
+        outer: f64,
+    },
+    /// So far away that its rays are parallel.
+    Directional {
+        /// Unit vector from the scene to the light.
+        direction: DVec3,
+        /// Irradiance on a surface that faces it.
+        irradiance: Vec3,
+    },
+}
+
+/// What a light sends to a point, shadows apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Illumination {
+    /// Unit vector from the point to the light.
+    pub direction: Vec3,
+    /// Irradiance on a surface that faces the light.
+    pub irradiance: Vec3,
+}
+
+impl Light {
+    /// The shadow ray from `origin`: to the point of the light with `end` 1, or along its direction
+    /// with an infinite `end`.
+    #[must_use]
+    #[inline]
+    pub fn shadow_ray(&self, origin: Vec3) -> Ray {
+        match self {
+            Self::Point { position, .. } | Self::Spot { position, .. } => {
+                Ray::between(origin, position.as_vec3())
+            }
+            Self::Directional { direction, .. } => Ray::towards(origin, direction.as_vec3()),
+        }
+    }
+
+    /// What arrives at `point` where nothing is in between; `None` outside the cone of a spot light
+    /// and at the place of the light itself.
+    #[must_use]
+    #[inline]
+    pub fn illuminate(&self, point: DVec3) -> Option<Illumination> {
+        let from = |position: DVec3, intensity: Vec3| {
+            let to_light = position - point;
+            let squared = to_light.length_squared();
+            (squared > 0.0).then(|| Illumination {
+                direction: (to_light / squared.sqrt()).as_vec3(),
+                irradiance: intensity * (1.0 / squared) as f32,
+            })
+        };
+        match *self {
+            Self::Point { position, intensity } => from(position, intensity),
+            Self::Spot { position, axis, intensity, inner, outer } => {
+                let mut light = from(position, intensity)?;
+                let cosine = -axis.dot(light.direction.as_dvec3());
+                let (inner, outer) = (inner.cos(), outer.cos());
+                if cosine <= outer {
+                    return None;
+                }
+                // The falloff that KHR_lights_punctual recommends: a squared linear ramp of the cosine.
+                let ramp = ((cosine - outer) / (inner - outer).max(1e-9)).clamp(0.0, 1.0);
+                light.irradiance *= (ramp * ramp) as f32;
+                Some(light)
+            }
+            Self::Directional { direction, irradiance } => {
+                Some(Illumination { direction: direction.as_vec3(), irradiance })
+            }
+        }
+    }
+
+    /// The same light with its place moved by `-origin`.
+    #[must_use]
+    pub(super) fn relative_to(mut self, origin: DVec3) -> Self {
+        if let Self::Point { position, .. } | Self::Spot { position, .. } = &mut self {
+            *position -= origin;
+        }
+        self
+    }
+}

@@ -1,0 +1,80 @@
+//! What is rendered: triangles with materials, lights, a camera.
+//!
+//! Loaders and built-in generators fill a [`Draft`] in f64 world coordinates; [`Draft::finish`]
+//! moves it to a local origin, rounds it to f32 once, drops what is not a triangle and gives the
+//! [`Scene`] that everything else reads.
+
+mod camera;
+mod draft;
+mod error;
+mod light;
+mod material;
+mod sensible;
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+
+pub use camera::Camera;
+pub use draft::{Draft, DraftTriangle, Dropped};
+pub use error::SceneError;
+pub use light::{Illumination, Light};
+pub use material::Material;
+
+use crate::geometry::{Bounds, TriangleId, Triangles};
+
+/// A scene ready for queries and rendering, in local f32 coordinates.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name for messages and statistics.
+    pub name: String,
+    /// The triangles, opaque ones first.
+    pub triangles: Arc<Triangles>,
+    /// Shading normals of each triangle's corners, in the order of `triangles`; zero vectors where
+    /// the surface is flat. Empty if no triangle has any.
+    pub normals: Vec<[Vec3; 3]>,
+    /// Index into `materials` of each triangle.
+    pub material_of: Vec<u32>,
+    /// The materials.
+    pub materials: Vec<Material>,
+    /// The lights, in local coordinates.
+    pub lights: Vec<Light>,
+    /// The camera, in local coordinates.
+    pub camera: Camera,
+    /// Light that reaches every point of every surface without shadow.
+    pub ambient: Vec3,
+    /// Radiance of rays that leave the scene.
+    pub background: Vec3,
+    /// Factor from radiance to picture values; `None`: chosen from the picture.
+    pub exposure: Option<f32>,
+    /// World coordinates = local coordinates + this.
+    pub origin: DVec3,
+    /// What was left out of the file.
+    pub dropped: Dropped,
+    /// What the program decided for the user (a camera, lights, a shift): one line each.
+    pub notes: Vec<String>,
+}
+
+impl Scene {
+    /// The material of a triangle.
+    #[must_use]
+    #[inline]
+    pub fn material(&self, triangle: TriangleId) -> &Material {
+        &self.materials[self.material_of[triangle as usize] as usize]
+    }
+
+    /// The box of all triangles.
+    ///
+    /// # Panics
+    /// Never: a scene has at least one triangle.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.triangles.bounds().expect("a scene has triangles")
+    }
+
+    /// Whether any triangle lets light through.
+    #[must_use]
+    pub fn has_transparent(&self) -> bool {
+        (self.triangles.opaque_count() as usize) < self.triangles.len()
+    }
+}
