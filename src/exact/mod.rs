@@ -1,7 +1,8 @@
 //! Exact decisions: does the open ray meet the closed triangle, as real arithmetic on the given bits says?
 //!
-//! [`certified`] decides in f64 where a bound allows, else by [`expansion`]s.
-//! The [`oracle`] answers the same question by big integers and shares no code with it;
+//! Three stages, each asked only about what the one before could not certify: [`filter`] (f32, many triangles
+//! at a time), then [`certified`] (f64, then [`expansion`]s).
+//! The [`oracle`] answers the same question by big integers and shares no code with them;
 //! [`adversary`] makes queries that are hard to get right.
 //!
 //! All of it assumes the floating-point environment that Rust guarantees: rounding to nearest, and denormals not flushed to zero.
@@ -9,7 +10,9 @@
 pub mod adversary;
 pub mod certified;
 pub mod expansion;
+pub mod filter;
 pub mod oracle;
 
 pub use certified::{Stage, blocks, decide};
+pub use filter::Exact;
 pub use oracle::Verdict;
