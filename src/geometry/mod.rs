@@ -4,6 +4,7 @@ mod bounds;
 pub mod intersect;
 pub mod lanes;
 mod ray;
+pub mod surface;
 mod triangles;
 
 pub use bounds::Bounds;

@@ -4,6 +4,7 @@
 //! moves it to a local origin, rounds it to f32 once, drops what is not a triangle and gives the
 //! [`Scene`] that everything else reads.
 
+pub mod builtin;
 mod camera;
 mod draft;
 mod error;
