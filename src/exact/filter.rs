@@ -75,7 +75,7 @@ impl TriangleTest for Exact {
         let size = largest(e1).max(largest(e2));
         let twice = size.add(size);
         let area = twice.mul_add(twice, underflow);
-        let [x, y, z] = c.map(L::abs);
+        let [x, y, z] = magnitudes(c);
         let [weight_x, weight_y, weight_z] = weights.across;
         let moment = weight_x.mul_add(x, weight_y.mul_add(y, weight_z.mul_add(z, underflow)));
         let bound = size.mul_add(moment, area.mul_add(weights.along, weights.underflow));
@@ -132,12 +132,12 @@ struct Weights<L> {
 impl<L: Lanes> Weights<L> {
     #[inline(always)]
     fn of(direction: Vector<L>) -> Self {
-        let [x, y, z] = direction.map(L::abs);
-        let twice_sum = |a: L, b: L| a.add(b).mul(L::splat(2.0));
-        let along = x.add(y).add(z);
+        let [x, y, z] = magnitudes(direction);
+        let (yz, zx, xy) = (y.add(z), z.add(x), x.add(y));
+        let along = xy.add(z);
         let underflow = L::splat(UNDERFLOW);
         Self {
-            across: [twice_sum(y, z), twice_sum(z, x), twice_sum(x, y)],
+            across: [yz.add(yz), zx.add(zx), xy.add(xy)],
             along,
             underflow: underflow.mul_add(along, underflow),
         }
@@ -147,8 +147,14 @@ impl<L: Lanes> Weights<L> {
 /// The largest magnitude among the coordinates.
 #[inline(always)]
 fn largest<L: Lanes>(vector: Vector<L>) -> L {
-    let [x, y, z] = vector.map(L::abs);
+    let [x, y, z] = magnitudes(vector);
     x.max(y).max(z)
+}
+
+/// |x|. Written out: `map` and closures would not be compiled with the instruction set of the caller.
+#[inline(always)]
+fn magnitudes<L: Lanes>([x, y, z]: Vector<L>) -> Vector<L> {
+    [x.abs(), y.abs(), z.abs()]
 }
 
 #[inline(always)]
