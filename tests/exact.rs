@@ -3,12 +3,16 @@
 use glam::Vec3;
 use proptest::prelude::*;
 use umbra::exact::adversary::{Class, query};
+use umbra::exact::campaign::campaign;
 use umbra::exact::certified::{verdict, verdict_by_expansions};
 use umbra::exact::{Verdict, oracle};
 use umbra::geometry::{Ray, Triangle};
 
 /// Queries of each class that are held against the oracle.
 const ORACLE_QUERIES: u64 = 4_000;
+
+/// Queries of each class in the short campaign: with all classes, more than a million.
+const CAMPAIGN_QUERIES: u64 = 50_000;
 
 fn any_class() -> impl Strategy<Value = Class> {
     prop::sample::select(Class::ALL)
@@ -84,6 +88,17 @@ fn certified_verdicts_are_the_oracles_on_every_class() {
 }
 
 #[test]
+fn no_stage_contradicts_another_on_any_class() {
+    for &class in Class::ALL {
+        let summary = campaign(class, 0..CAMPAIGN_QUERIES);
+        println!("{class:20} {summary:?}");
+        assert_eq!(summary.wrong, 0, "{class}: {summary:?}");
+        assert_eq!(summary.blocked + summary.clear + summary.ties, CAMPAIGN_QUERIES);
+        assert_eq!(summary.by_filter + summary.by_double + summary.by_expansion, CAMPAIGN_QUERIES);
+    }
+}
+
+#[test]
 fn every_class_has_blocked_and_clear_queries() {
     for &class in Class::ALL {
         let verdicts = (0..ORACLE_QUERIES)
@@ -126,7 +141,7 @@ fn from_inside_a_closed_mesh_everything_is_blocked() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4096))]
+    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, ..Default::default() })]
 
     #[test]
     fn the_order_of_the_corners_does_not_matter(class in any_class(), index: u64) {

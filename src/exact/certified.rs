@@ -21,6 +21,8 @@
 //!
 //! Source of the method: Shewchuk (see `expansion`); the permanents are those of his `orient3d` filter.
 
+use glam::{DVec3, Vec3Swizzles};
+
 use super::expansion::{Expansion, difference};
 use super::oracle::Verdict;
 use crate::geometry::{Ray, Triangle};
@@ -54,76 +56,101 @@ pub fn verdict(ray: &Ray, triangle: &Triangle) -> Verdict {
 pub fn decide(ray: &Ray, triangle: &Triangle) -> (Verdict, Stage) {
     let doubles = Doubles::new(ray, triangle);
     let edges = doubles.edges();
-    if edges.contains(&Some(-1)) && edges.contains(&Some(1)) {
+    let signs = edges.map(|edge| edge.sign);
+    if is_mixed(signs) {
         return (Verdict::Clear, Stage::Double);
     }
-    if let [Some(first), Some(second), Some(third)] = edges
-        && ray.end > 0.0
-    {
-        let settled = settle([first, second, third], || doubles.interval());
-        if let Some(verdict) = settled {
-            return (verdict, Stage::Double);
+    if edges[0].is_certain & edges[1].is_certain & edges[2].is_certain & (ray.end > 0.0) {
+        let interval = doubles.interval();
+        if interval[0].is_certain & interval[1].is_certain {
+            return (settle(signs, || interval.map(|end| end.sign)), Stage::Double);
         }
     }
-    (verdict_by_expansions(ray, triangle), Stage::Expansion)
+    (complete(ray, triangle, &doubles), Stage::Expansion)
+}
+
+/// The verdict, with expansions for just those signs that f64 leaves open.
+#[cold]
+fn complete(ray: &Ray, triangle: &Triangle, doubles: &Doubles) -> Verdict {
+    if !is_valid(ray, triangle) {
+        return Verdict::Clear;
+    }
+    let exact = Expansions::new(ray, triangle);
+    let [first, second, third] = doubles.edges();
+    let edges =
+        [first.or(|| exact.edge(0)), second.or(|| exact.edge(1)), third.or(|| exact.edge(2))];
+    settle(edges, || {
+        let [start, stop] = doubles.interval();
+        [start.or(|| exact.start()), stop.or(|| exact.stop())]
+    })
 }
 
 /// The verdict by exact expansions alone.
 #[must_use]
 pub fn verdict_by_expansions(ray: &Ray, triangle: &Triangle) -> Verdict {
-    if !ray.is_valid() || !triangle.iter().all(|corner| corner.is_finite()) {
+    if !is_valid(ray, triangle) {
         return Verdict::Clear;
     }
     let exact = Expansions::new(ray, triangle);
-    settle(exact.edges(), || Some(exact.interval())).expect("expansions have a sign")
+    settle([exact.edge(0), exact.edge(1), exact.edge(2)], || [exact.start(), exact.stop()])
 }
 
-/// The verdict from the signs of the edges, and if needed those of start and stop; `None` without the latter.
-fn settle(edges: [i8; 3], interval: impl FnOnce() -> Option<[i8; 2]>) -> Option<Verdict> {
-    let (least, greatest) = (edges.into_iter().min()?, edges.into_iter().max()?);
-    let slope = least + greatest;
-    if least * greatest < 0 || slope == 0 {
-        return Some(Verdict::Clear);
+fn is_valid(ray: &Ray, triangle: &Triangle) -> bool {
+    ray.is_valid() && triangle.iter().all(|corner| corner.is_finite())
+}
+
+/// The verdict from the signs of the edges, and if needed those of start and stop.
+#[inline(always)]
+fn settle(edges: [i8; 3], interval: impl FnOnce() -> [i8; 2]) -> Verdict {
+    let slope = edges.iter().sum::<i8>().signum();
+    if is_mixed(edges) || slope == 0 {
+        return Verdict::Clear;
     }
-    let [start, stop] = interval()?.map(|sign| sign * slope.signum());
-    Some(match start.min(stop) {
+    let [start, stop] = interval();
+    match slope * if slope > 0 { start.min(stop) } else { start.max(stop) } {
         1 => Verdict::Blocked,
         0 => Verdict::Tie,
         _ => Verdict::Clear,
-    })
+    }
+}
+
+/// Whether both signs occur.
+#[inline(always)]
+fn is_mixed([first, second, third]: [i8; 3]) -> bool {
+    first.min(second).min(third) < 0 && first.max(second).max(third) > 0
 }
 
 /// The quantities in f64.
 struct Doubles {
-    corners: [[f64; 3]; 3],
-    direction: [f64; 3],
-    sides: [[f64; 3]; 2],
+    corners: [DVec3; 3],
+    direction: DVec3,
+    sides: [DVec3; 2],
     end: f64,
 }
 
 impl Doubles {
-    #[inline]
-    fn new(ray: &Ray, triangle: &Triangle) -> Self {
-        let wide = |v: glam::Vec3| v.to_array().map(f64::from);
-        let (origin, [a, b, c]) = (wide(ray.origin), triangle.map(wide));
+    #[inline(always)]
+    fn new(ray: &Ray, &[a, b, c]: &Triangle) -> Self {
+        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
         Self {
-            corners: [a, b, c].map(|corner| minus(corner, origin)),
-            direction: wide(ray.direction),
-            sides: [minus(b, a), minus(c, a)],
+            corners: [a - origin, b - origin, c - origin],
+            direction,
+            sides: [b - a, c - a],
             end: f64::from(ray.end),
         }
     }
 
-    /// The signs of the edges, where certain.
-    #[inline]
-    fn edges(&self) -> [Option<i8>; 3] {
-        let moments = self.corners.map(|corner| Bounded::cross(self.direction, corner));
-        [(0, 1), (1, 2), (2, 0)].map(|(from, to)| moments[from].dot(self.corners[to]).sign())
+    #[inline(always)]
+    fn edges(&self) -> [Sign; 3] {
+        let [a, b, c] = self.corners;
+        let edge = |from, to| Bounded::cross(self.direction, from).dot(to).sign();
+        [edge(a, b), edge(b, c), edge(c, a)]
     }
 
-    /// The signs of start and stop, if both are certain.
-    #[inline]
-    fn interval(&self) -> Option<[i8; 2]> {
+    /// The signs of start and stop.
+    #[inline(always)]
+    fn interval(&self) -> [Sign; 2] {
         let normal = Bounded::cross(self.sides[0], self.sides[1]);
         let start = normal.dot(self.corners[0]);
         let slope = normal.dot(self.direction);
@@ -135,7 +162,7 @@ impl Doubles {
         } else {
             slope
         };
-        Some([start.sign()?, stop.sign()?])
+        [start.sign(), stop.sign()]
     }
 }
 
@@ -146,42 +173,43 @@ struct Bounded<T> {
     permanent: T,
 }
 
-impl Bounded<[f64; 3]> {
-    #[inline]
-    fn cross(a: [f64; 3], b: [f64; 3]) -> Self {
-        let products = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| (a[i] * b[j], a[j] * b[i]));
-        Self {
-            value: products.map(|(plus, minus)| plus - minus),
-            permanent: products.map(|(plus, minus)| plus.abs() + minus.abs()),
-        }
+impl Bounded<DVec3> {
+    #[inline(always)]
+    fn cross(a: DVec3, b: DVec3) -> Self {
+        let (plus, minus) = (a.yzx() * b.zxy(), a.zxy() * b.yzx());
+        Self { value: plus - minus, permanent: plus.abs() + minus.abs() }
     }
 
-    #[inline]
-    fn dot(&self, b: [f64; 3]) -> Bounded<f64> {
-        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        Bounded { value: dot(self.value, b), permanent: dot(self.permanent, b.map(f64::abs)) }
+    #[inline(always)]
+    fn dot(&self, b: DVec3) -> Bounded<f64> {
+        Bounded { value: self.value.dot(b), permanent: self.permanent.dot(b.abs()) }
     }
 }
 
 impl Bounded<f64> {
-    /// The sign of the exact value, if certain. Never so with infinities or NaN.
-    #[inline]
-    fn sign(self) -> Option<i8> {
+    /// The sign of the exact value. Without branches: here they are hard to predict.
+    #[inline(always)]
+    fn sign(self) -> Sign {
         let error = ERROR_BOUND * self.permanent;
-        if self.value > error {
-            Some(1)
-        } else if self.value < -error {
-            Some(-1)
-        } else {
-            // All terms are zero.
-            (self.permanent == 0.0).then_some(0)
-        }
+        // With infinities and NaN neither holds.
+        let sign = i8::from(self.value > error) - i8::from(self.value < -error);
+        // A permanent of zero: every term is zero.
+        Sign { sign, is_certain: (sign != 0) | (self.permanent == 0.0) }
     }
 }
 
-#[inline]
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| a[i] - b[i])
+/// −1, 0 or 1; 0 also where unknown.
+#[derive(Clone, Copy)]
+struct Sign {
+    sign: i8,
+    is_certain: bool,
+}
+
+impl Sign {
+    /// The sign, or else the exact one.
+    fn or(self, exact: impl FnOnce() -> i8) -> i8 {
+        if self.is_certain { self.sign } else { exact() }
+    }
 }
 
 /// The quantities as expansions.
@@ -204,23 +232,34 @@ impl Expansions {
         }
     }
 
-    fn edges(&self) -> [i8; 3] {
-        let [a, b, c] = &self.corners;
-        [(a, b), (b, c), (c, a)].map(|(from, to)| slope(self.direction, &cross(from, to)).sign())
+    /// The sign of the edge from this corner to the next.
+    fn edge(&self, corner: usize) -> i8 {
+        let (from, to) = (&self.corners[corner], &self.corners[(corner + 1) % 3]);
+        slope(self.direction, &cross(from, to)).sign()
     }
 
-    fn interval(&self) -> [i8; 2] {
-        let normal = cross(&self.sides[0], &self.sides[1]);
+    fn normal(&self) -> [Expansion<16>; 3] {
+        cross(&self.sides[0], &self.sides[1])
+    }
+
+    fn height(&self, normal: &[Expansion<16>; 3]) -> Expansion<192> {
         let [x, y, z] =
             [0, 1, 2].map(|i| normal[i].times_difference::<32, 64>(&self.corners[0][i]));
-        let start: Expansion<192> = x.plus::<64, 128>(&y).plus(&z);
+        x.plus::<64, 128>(&y).plus(&z)
+    }
+
+    fn start(&self) -> i8 {
+        self.height(&self.normal()).sign()
+    }
+
+    fn stop(&self) -> i8 {
+        let normal = self.normal();
         let slope = slope(self.direction, &normal);
-        let stop = if self.end < f64::INFINITY {
-            slope.times::<192>(self.end).plus::<192, 384>(&start.negated()).sign()
-        } else {
-            slope.sign()
-        };
-        [start.sign(), stop]
+        if self.end.is_infinite() {
+            return slope.sign();
+        }
+        let end = slope.times::<192>(self.end);
+        end.plus::<192, 384>(&self.height(&normal).negated()).sign()
     }
 }
 

@@ -164,40 +164,80 @@ fn negative<L: Lanes>(value: L) -> L {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
-    use crate::exact::Verdict;
-    use crate::exact::adversary::{Class, query};
     use crate::geometry::lanes::Scalar;
 
-    fn claims<const FUSED: bool>(ray: &Ray, triangle: &Triangle) -> Claims {
-        let corners = triangle.map(|corner| corner.to_array().map(Scalar::<FUSED, false>));
-        Exact::claims(&RayLanes::new(ray), &corners)
+    fn claims(ray: &Ray, triangle: &Triangle) -> (u32, u32) {
+        let corners = triangle.map(|corner| corner.to_array().map(Scalar::<false, false>));
+        let claims = Exact::claims(&RayLanes::new(ray), &corners);
+        (claims.certain, claims.open)
+    }
+
+    const BLOCKS: (u32, u32) = (1, 0);
+    const OPEN: (u32, u32) = (0, 1);
+    const MISSES: (u32, u32) = (0, 0);
+
+    /// A triangle of this size at a distance of one, and a ray towards its plane.
+    fn small_far(size: f32, x: f32, end: f32) -> (Ray, Triangle) {
+        let origin = Vec3::new(0.3, 0.2, 0.1);
+        let corner = origin + Vec3::new(0.5, 0.25, 1.0);
+        let triangle = [corner, corner + size * Vec3::X, corner + size * Vec3::Y];
+        let target = corner + size * Vec3::new(x, 0.25, 0.0);
+        (Ray { origin, direction: target - origin, end }, triangle)
     }
 
     #[test]
-    fn what_the_filter_claims_is_so() {
-        for &class in Class::ALL {
-            let (mut n, mut open, mut open_fused) = (0, 0, 0);
-            for (ray, triangle) in (0..100_000).map(|index| query(class, index)) {
-                if !ray.is_valid() {
-                    continue;
-                }
-                let blocked = certified::verdict(&ray, &triangle) == Verdict::Blocked;
-                for claims in [claims::<false>(&ray, &triangle), claims::<true>(&ray, &triangle)] {
-                    assert!(
-                        claims.open == 1 || (claims.certain == 1) == blocked,
-                        "{class}: {ray:?} {triangle:?}"
-                    );
-                }
-                n += 1;
-                open += claims::<false>(&ray, &triangle).open;
-                open_fused += claims::<true>(&ray, &triangle).open;
+    fn small_far_triangles_are_easy() {
+        for size in [1.0, 1e-1, 1e-2, 1e-3, 1e-4] {
+            for (x, end, expected) in [
+                (0.25, 2.0, BLOCKS),
+                (0.25, f32::INFINITY, BLOCKS),
+                (0.25, 0.5, MISSES),
+                (-0.25, 2.0, MISSES),
+                (1.25, 2.0, MISSES),
+                (0.0, 2.0, OPEN),
+                (0.25, 1.0, OPEN),
+            ] {
+                let (ray, triangle) = small_far(size, x, end);
+                assert_eq!(claims(&ray, &triangle), expected, "{size} {x} {end}");
             }
-            println!(
-                "{class:20} open {:8.5} fused {:8.5}",
-                open as f64 / n as f64,
-                open_fused as f64 / n as f64
+        }
+    }
+
+    #[test]
+    fn over_and_underflow_leave_a_lane_open() {
+        let (ray, triangle) = small_far(1.0, 0.25, 2.0);
+        for (scale, expected) in [
+            (1e-30, OPEN),
+            (1e-15, OPEN),
+            (1e-11, BLOCKS),
+            (1e11, BLOCKS),
+            (1e15, OPEN),
+            (1e38, OPEN),
+        ] {
+            let scaled =
+                Ray { origin: scale * ray.origin, direction: scale * ray.direction, ..ray };
+            assert_eq!(
+                claims(&scaled, &triangle.map(|corner| scale * corner)),
+                expected,
+                "{scale}"
             );
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_never_blocks() {
+        let (ray, triangle) = small_far(1.0, 0.25, 2.0);
+        for corner in 0..3 {
+            for axis in 0..3 {
+                for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+                    let mut broken = triangle;
+                    broken[corner][axis] = value;
+                    assert_eq!(claims(&ray, &broken).0, 0, "{broken:?}");
+                }
+            }
         }
     }
 }
