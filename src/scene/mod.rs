@@ -4,12 +4,20 @@
 //! moves it to a local origin, rounds it to f32 once, drops what is not a triangle and gives the
 //! [`Scene`] that everything else reads.
 
+pub mod builtin;
 mod camera;
 mod draft;
 mod error;
+mod gltf;
 mod light;
+mod load;
 mod material;
+mod mtl;
+mod obj;
+mod placement;
+mod polygon;
 mod sensible;
+mod toml;
 
 use std::sync::Arc;
 
@@ -19,7 +27,9 @@ pub use camera::Camera;
 pub use draft::{Draft, DraftTriangle, Dropped};
 pub use error::SceneError;
 pub use light::{Illumination, Light};
+pub use load::{draft, load};
 pub use material::Material;
+use material::Surroundings;
 
 use crate::geometry::{Bounds, TriangleId, Triangles};
 
