@@ -295,7 +295,7 @@ impl Random {
     }
 
     fn below(&mut self, count: usize) -> usize {
-        (self.bits() >> 32) as usize * count >> 32
+        ((self.bits() >> 32) as usize * count) >> 32
     }
 
     fn one_in(&mut self, count: usize) -> bool {

@@ -15,7 +15,8 @@ const UNPACK: &str = include_str!("unpack.py");
 
 /// The library in the cache, fetched first if it is not there. The error is one line.
 pub fn fetch(platform: &Platform) -> Result<PathBuf, String> {
-    let root = cache_root().ok_or("there is no folder for caches: neither XDG_CACHE_HOME nor a home is set")?;
+    let root = cache_root()
+        .ok_or("there is no folder for caches: neither XDG_CACHE_HOME nor a home is set")?;
     fetch_into(&root, platform, &python()?)
 }
 
@@ -26,10 +27,13 @@ pub fn fetch_into(root: &Path, platform: &Platform, python: &Path) -> Result<Pat
     if library.is_file() {
         return Ok(library);
     }
-    let draft = root.join("embree-ffi").join(format!("draft-{}-{}", platform.name, std::process::id()));
-    let outcome = fill(&draft, platform, python).and_then(|()| match fs::rename(draft.join("libraries"), &home) {
-        Err(error) if !library.is_file() => Err(format!("{}: {error}", home.display())),
-        _ => Ok(library),
+    let draft =
+        root.join("embree-ffi").join(format!("draft-{}-{}", platform.name, std::process::id()));
+    let outcome = fill(&draft, platform, python).and_then(|()| {
+        match fs::rename(draft.join("libraries"), &home) {
+            Err(error) if !library.is_file() => Err(format!("{}: {error}", home.display())),
+            _ => Ok(library),
+        }
     });
     let _ = fs::remove_dir_all(&draft);
     outcome
@@ -39,11 +43,19 @@ fn fill(draft: &Path, platform: &Platform, python: &Path) -> Result<(), String> 
     let libraries = draft.join("libraries");
     fs::create_dir_all(&libraries).map_err(|error| format!("{}: {error}", libraries.display()))?;
     let mut pip = Command::new(python);
-    pip.args(["-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-input", "--no-deps"])
-        .args(["--retries", "1", "--timeout", "20", "--only-binary=:all:", "--implementation", "cp"])
-        .args(["--python-version", "3.12", "--abi", "cp312", "--platform", platform.pip_tag, "--dest"])
-        .arg(draft)
-        .arg(format!("embreex=={WHEEL_VERSION}"));
+    pip.args([
+        "-m",
+        "pip",
+        "download",
+        "--quiet",
+        "--disable-pip-version-check",
+        "--no-input",
+        "--no-deps",
+    ])
+    .args(["--retries", "1", "--timeout", "20", "--only-binary=:all:", "--implementation", "cp"])
+    .args(["--python-version", "3.12", "--abi", "cp312", "--platform", platform.pip_tag, "--dest"])
+    .arg(draft)
+    .arg(format!("embreex=={WHEEL_VERSION}"));
     run("pip download", pip)?;
     let wheel = fs::read_dir(draft)
         .map_err(|error| error.to_string())?
@@ -67,7 +79,10 @@ fn run(what: &str, mut command: Command) -> Result<(), String> {
     }
     let complaint = String::from_utf8_lossy(&output.stderr);
     let lines = || complaint.lines().map(str::trim).filter(|line| !line.is_empty());
-    let line = lines().rfind(|line| line.starts_with("ERROR:")).or_else(|| lines().next_back()).unwrap_or("failed");
+    let line = lines()
+        .rfind(|line| line.starts_with("ERROR:"))
+        .or_else(|| lines().next_back())
+        .unwrap_or("failed");
     Err(format!("{what}: {}", line.trim_start_matches("ERROR: ")))
 }
 
@@ -106,7 +121,10 @@ mod tests {
     fn without_a_network_the_reason_is_one_line_and_nothing_is_left_behind() {
         let root = tempfile::tempdir().unwrap();
         let tools = tempfile::tempdir().unwrap();
-        let python = stub(tools.path(), "echo 'WARNING: retrying' >&2; echo 'ERROR: no matching release' >&2; echo >&2; exit 1");
+        let python = stub(
+            tools.path(),
+            "echo 'WARNING: retrying' >&2; echo 'ERROR: no matching release' >&2; echo >&2; exit 1",
+        );
         let reason = fetch_into(root.path(), &linux(), &python).unwrap_err();
         assert_eq!(reason, "pip download: no matching release");
         assert_eq!(fs::read_dir(root.path().join("embree-ffi")).unwrap().count(), 0);
