@@ -1,6 +1,7 @@
 //! Culling: which triangles might a ray meet?
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use super::Cell;
 use crate::geometry::{Ray, TriangleId};
@@ -29,4 +30,19 @@ pub trait Walk: Send + Sync + 'static {
 
     /// Bytes held.
     fn memory(&self) -> usize;
+}
+
+impl<W: Walk> Walk for Arc<W> {
+    #[inline(always)]
+    fn walk<V: Visit>(&self, ray: &Ray, visitor: &mut V) {
+        W::walk(self, ray, visitor);
+    }
+
+    fn order(&self) -> &[TriangleId] {
+        W::order(self)
+    }
+
+    fn memory(&self) -> usize {
+        W::memory(self)
+    }
 }

@@ -1,11 +1,15 @@
 //! Triangle tests: whether a ray meets a triangle, one file a method.
 
+mod embree;
 mod moller;
 mod own_box;
 mod pluecker;
+mod watertight;
 
+pub use embree::{AtLeast, AtMost, BoxTest, FastBox, RobustBox};
 pub use moller::Moller;
 pub use pluecker::Pluecker;
+pub use watertight::{Shear, Watertight};
 
 use super::lanes::{Lanes, Vector};
 use super::{Ray, Triangle};
@@ -28,6 +32,8 @@ pub struct RayLanes<L> {
     pub direction: Vector<L>,
     /// End of the interval.
     pub end: L,
+    /// What [`Watertight`] needs; computed only where it is used, as everything here is inlined.
+    pub shear: Shear<L>,
 }
 
 impl<L: Lanes> RayLanes<L> {
@@ -38,6 +44,7 @@ impl<L: Lanes> RayLanes<L> {
             origin: ray.origin.to_array().map(L::splat),
             direction: ray.direction.to_array().map(L::splat),
             end: L::splat(ray.end),
+            shear: Shear::new(ray),
         }
     }
 }
