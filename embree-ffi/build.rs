@@ -33,7 +33,8 @@ fn main() {
 fn settle() -> Result<String, String> {
     if let Some(folder) = env::var_os(EMBREE_DIR).filter(|folder| !folder.is_empty()) {
         println!("cargo:rerun-if-changed={}", Path::new(&folder).display());
-        let surroundings = supply::Surroundings { embree_dir: Some(folder.into()), ..Default::default() };
+        let surroundings =
+            supply::Surroundings { embree_dir: Some(folder.into()), ..Default::default() };
         return Ok(surroundings.candidates()?[0].path.display().to_string());
     }
     if env::var("HOST") == env::var("TARGET")
@@ -51,7 +52,9 @@ fn settle() -> Result<String, String> {
     if let Some(path) = supply::cached_library(&platform) {
         return Ok(path.display().to_string());
     }
-    if env::var("CARGO_NET_OFFLINE").is_ok_and(|word| word == "true") || env::var_os("DOCS_RS").is_some() {
+    if env::var("CARGO_NET_OFFLINE").is_ok_and(|word| word == "true")
+        || env::var_os("DOCS_RS").is_some()
+    {
         return Err("it is not in the cache, and this build is offline".into());
     }
     supply::fetch(&platform).map(|path| path.display().to_string())
@@ -60,7 +63,9 @@ fn settle() -> Result<String, String> {
 /// For the witness test only: `embree4-sys` links with `-lembree4`, so a folder must hold the library under that name.
 fn lay_out_for_the_linker(library: &Path) {
     #[cfg(unix)]
-    if let (Some(folder), Some(out)) = (library.parent().filter(|_| library.is_absolute()), env::var_os("OUT_DIR")) {
+    if let (Some(folder), Some(out)) =
+        (library.parent().filter(|_| library.is_absolute()), env::var_os("OUT_DIR"))
+    {
         let out = Path::new(&out).join("link");
         let _ = std::fs::create_dir_all(&out);
         for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {

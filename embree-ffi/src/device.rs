@@ -99,7 +99,10 @@ impl DeviceConfig {
     ///
     /// [`ControlFlow::Break`] on an allocation cancels the build at hand with [`ErrorCode::OutOfMemory`]; on a release it
     /// means nothing. A panic cancels likewise, and goes on from the call that was cancelled.
-    pub fn memory_monitor(mut self, monitor: impl Fn(isize) -> ControlFlow<()> + Send + Sync + 'static) -> Self {
+    pub fn memory_monitor(
+        mut self,
+        monitor: impl Fn(isize) -> ControlFlow<()> + Send + Sync + 'static,
+    ) -> Self {
         self.memory_monitor = Some(Box::new(monitor));
         self
     }
@@ -176,11 +179,15 @@ impl Device {
         DeviceProperties {
             native_packets_of_4: has(RTCDeviceProperty::RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED),
             native_packets_of_8: has(RTCDeviceProperty::RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED),
-            native_packets_of_16: has(RTCDeviceProperty::RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED),
+            native_packets_of_16: has(
+                RTCDeviceProperty::RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED,
+            ),
             ray_masks: has(RTCDeviceProperty::RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED),
             filters: has(RTCDeviceProperty::RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED),
             backface_culling: has(RTCDeviceProperty::RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED),
-            ignores_invalid_rays: has(RTCDeviceProperty::RTC_DEVICE_PROPERTY_IGNORE_INVALID_RAYS_ENABLED),
+            ignores_invalid_rays: has(
+                RTCDeviceProperty::RTC_DEVICE_PROPERTY_IGNORE_INVALID_RAYS_ENABLED,
+            ),
             always_compact: has(RTCDeviceProperty::RTC_DEVICE_PROPERTY_COMPACT_POLYS_ENABLED),
         }
     }
@@ -206,7 +213,10 @@ impl Device {
 
 impl fmt::Debug for Device {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.debug_struct("Device").field("memory_used", &self.memory_used()).finish_non_exhaustive()
+        formatter
+            .debug_struct("Device")
+            .field("memory_used", &self.memory_used())
+            .finish_non_exhaustive()
     }
 }
 
@@ -251,7 +261,10 @@ fn creation_error(library: &Library) -> Error {
     // SAFETY: a null device is allowed here, and means this thread. The message stays until the next error.
     unsafe {
         let code = ErrorCode::from_raw(library.api.rtcGetDeviceError(null_mut()));
-        let message = library.last_error_message.map(|last| last(null_mut())).filter(|message| !message.is_null());
+        let message = library
+            .last_error_message
+            .map(|last| last(null_mut()))
+            .filter(|message| !message.is_null());
         let message = message.map(|message| CStr::from_ptr(message).to_string_lossy().into_owned());
         Error::Embree { code, message: message.unwrap_or_else(|| "no device".into()) }
     }

@@ -9,8 +9,8 @@ use std::{
 use crate::{
     Hit,
     bindings::{
-        RTCFeatureFlags, RTCFilterFunctionNArguments, RTCIntersectArguments, RTCOccludedArguments, RTCRayQueryContext,
-        RTCRayQueryFlags,
+        RTCFeatureFlags, RTCFilterFunctionNArguments, RTCIntersectArguments, RTCOccludedArguments,
+        RTCRayQueryContext, RTCRayQueryFlags,
     },
 };
 
@@ -40,7 +40,9 @@ impl<F: FnMut(usize, &Hit) -> Verdict> FilterContext<F> {
     /// Valid while `self` stays where it is and nobody else touches it.
     pub(crate) fn occluded_arguments(&mut self, flags: RTCRayQueryFlags) -> RTCOccludedArguments {
         RTCOccludedArguments {
-            flags: RTCRayQueryFlags(flags.0 | RTCRayQueryFlags::RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER.0),
+            flags: RTCRayQueryFlags(
+                flags.0 | RTCRayQueryFlags::RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER.0,
+            ),
             feature_mask: RTCFeatureFlags::RTC_FEATURE_FLAG_ALL,
             context: (&raw mut *self).cast(),
             filter: Some(ask::<F>),
@@ -71,9 +73,12 @@ impl<F: FnMut(usize, &Hit) -> Verdict> FilterContext<F> {
 /// Called by Embree with the hits of 1, 4, 8 or 16 rays; those to be judged have a `valid` other than 0.
 ///
 /// After a panic it accepts everything unasked, which ends an occlusion query soonest.
-unsafe extern "C" fn ask<F: FnMut(usize, &Hit) -> Verdict>(arguments: *const RTCFilterFunctionNArguments) {
+unsafe extern "C" fn ask<F: FnMut(usize, &Hit) -> Verdict>(
+    arguments: *const RTCFilterFunctionNArguments,
+) {
     // SAFETY: Embree passes its arguments, in them the context of the query, which `FilterContext` made and lent for it.
-    let (arguments, asked) = unsafe { (&*arguments, &mut *(*arguments).context.cast::<FilterContext<F>>()) };
+    let (arguments, asked) =
+        unsafe { (&*arguments, &mut *(*arguments).context.cast::<FilterContext<F>>()) };
     let width = arguments.N as usize;
     for lane in 0..width {
         // SAFETY: there are `N` of them, ours to read and write during the call.
@@ -100,7 +105,18 @@ unsafe fn hit_in_lane(ray: *const c_void, hit: *const c_void, width: usize, lane
     let (ray, hit, ids) = unsafe {
         let row = |row: usize| row * width + lane;
         let (ray, floats, ids) = (ray.cast::<f32>(), hit.cast::<f32>(), hit.cast::<u32>());
-        (*ray.add(row(8)), [0, 1, 2, 3, 4].map(|at| *floats.add(row(at))), [5, 6].map(|at| *ids.add(row(at))))
+        (
+            *ray.add(row(8)),
+            [0, 1, 2, 3, 4].map(|at| *floats.add(row(at))),
+            [5, 6].map(|at| *ids.add(row(at))),
+        )
     };
-    Hit { geometry: ids[1], primitive: ids[0], t: ray, u: hit[3], v: hit[4], normal: [hit[0], hit[1], hit[2]] }
+    Hit {
+        geometry: ids[1],
+        primitive: ids[0],
+        t: ray,
+        u: hit[3],
+        v: hit[4],
+        normal: [hit[0], hit[1], hit[2]],
+    }
 }

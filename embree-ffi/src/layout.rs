@@ -76,10 +76,14 @@ unsafe fn check_hit(api: &Embree, device: RTCDevice) -> Result<(), String> {
         let geometry = api.rtcNewGeometry(device, RTCGeometryType::RTC_GEOMETRY_TYPE_TRIANGLE);
         let vertex = RTCBufferType::RTC_BUFFER_TYPE_VERTEX;
         let index = RTCBufferType::RTC_BUFFER_TYPE_INDEX;
-        let corners = api.rtcSetNewGeometryBuffer(geometry, vertex, 0, RTCFormat::RTC_FORMAT_FLOAT3, 12, 3);
-        let indices = api.rtcSetNewGeometryBuffer(geometry, index, 0, RTCFormat::RTC_FORMAT_UINT3, 12, 1);
+        let corners =
+            api.rtcSetNewGeometryBuffer(geometry, vertex, 0, RTCFormat::RTC_FORMAT_FLOAT3, 12, 3);
+        let indices =
+            api.rtcSetNewGeometryBuffer(geometry, index, 0, RTCFormat::RTC_FORMAT_UINT3, 12, 1);
         if !corners.is_null() && !indices.is_null() {
-            corners.cast::<[f32; 9]>().write_unaligned([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+            corners
+                .cast::<[f32; 9]>()
+                .write_unaligned([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
             indices.cast::<[u32; 3]>().write_unaligned([0, 1, 2]);
             api.rtcCommitGeometry(geometry);
             api.rtcAttachGeometry(scene, geometry);

@@ -62,17 +62,20 @@ impl Library {
 
     fn open(candidate: &Candidate) -> Result<Library, String> {
         // SAFETY: a file of this name in a place the user or the system set aside for libraries is taken to be Embree.
-        let library = unsafe { supply::open(&candidate.path) }.map_err(|error| supply::one_line(&error))?;
+        let library =
+            unsafe { supply::open(&candidate.path) }.map_err(|error| supply::one_line(&error))?;
         // Never unloaded, whatever comes: its task scheduler may have started threads.
         let library: &'static libloading::Library = Box::leak(Box::new(library));
         // SAFETY: as above.
         let version = unsafe { supply::version_of(library) }?;
         version.check()?;
         // SAFETY: the version says that the functions are those of our header; opening it again adds a reference.
-        let api = unsafe { supply::open(&candidate.path).and_then(|again| Embree::from_library(again)) };
+        let api =
+            unsafe { supply::open(&candidate.path).and_then(|again| Embree::from_library(again)) };
         let api = api.map_err(|error| supply::one_line(&error))?;
         // SAFETY: this is that function's type.
-        let last_error_message = unsafe { library.get(b"rtcGetDeviceLastErrorMessage\0") }.map_or(None, |symbol| *symbol);
+        let last_error_message = unsafe { library.get(b"rtcGetDeviceLastErrorMessage\0") }
+            .map_or(None, |symbol| *symbol);
         layout::check(&api)?;
         Ok(Library { api, last_error_message, version, path: candidate.path.clone() })
     }
@@ -97,7 +100,11 @@ fn surroundings() -> Surroundings {
 
 impl std::fmt::Debug for Library {
     fn fmt(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
-        formatter.debug_struct("Library").field("version", &self.version).field("path", &self.path).finish_non_exhaustive()
+        formatter
+            .debug_struct("Library")
+            .field("version", &self.version)
+            .field("path", &self.path)
+            .finish_non_exhaustive()
     }
 }
 
@@ -134,7 +141,8 @@ mod tests {
     #[test]
     fn an_empty_embree_dir_is_told_and_nothing_else_is_tried() {
         let folder = tempfile::tempdir().unwrap();
-        let surroundings = Surroundings { embree_dir: Some(folder.path().into()), ..surroundings() };
+        let surroundings =
+            Surroundings { embree_dir: Some(folder.path().into()), ..surroundings() };
         let line = one_line_of(Library::find(&surroundings));
         assert!(line.starts_with("Embree is missing (EMBREE_DIR is "), "{line}");
     }
@@ -142,7 +150,10 @@ mod tests {
     #[test]
     fn without_any_library_the_line_says_why_and_the_three_ways_to_supply_one() {
         let reason = "pip download: no matching release";
-        let line = one_line_of(Library::find(&Surroundings { reason: Some(reason.into()), ..Default::default() }));
+        let line = one_line_of(Library::find(&Surroundings {
+            reason: Some(reason.into()),
+            ..Default::default()
+        }));
         assert_eq!(
             line,
             "Embree is missing (pip download: no matching release): set EMBREE_DIR to a folder that holds it, or install \
@@ -153,11 +164,16 @@ mod tests {
 
     #[test]
     fn embree_4_2_and_5_are_refused_with_the_reason() {
-        for (number, reason) in [(40_200, "4.3 made RTCHit and RTCRayQueryContext larger"), (50_000, "is too new")] {
+        for (number, reason) in
+            [(40_200, "4.3 made RTCHit and RTCRayQueryContext larger"), (50_000, "is too new")]
+        {
             let folder = tempfile::tempdir().unwrap();
             impostor(folder.path(), number);
             let line = one_line_of(Library::find(&in_folder(folder.path())));
-            assert!(line.contains("from EMBREE_DIR is refused: Embree ") && line.contains(reason), "{line}");
+            assert!(
+                line.contains("from EMBREE_DIR is refused: Embree ") && line.contains(reason),
+                "{line}"
+            );
         }
     }
 
@@ -181,7 +197,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let old = impostor(folder.path(), 40_200);
         let good = Library::load().unwrap_or_else(|error| panic!("{error}")).path().to_owned();
-        let surroundings = Surroundings { recorded: Some(old), cached: Some(good.clone()), ..Default::default() };
+        let surroundings =
+            Surroundings { recorded: Some(old), cached: Some(good.clone()), ..Default::default() };
         assert_eq!(Library::find(&surroundings).unwrap().path(), good);
     }
 
@@ -189,7 +206,9 @@ mod tests {
     fn embree_dir_is_taken_before_all_else() {
         let good = Library::load().unwrap_or_else(|error| panic!("{error}")).path().to_owned();
         let Some(home) = good.parent().filter(|_| good.is_absolute()) else { return };
-        let found = Library::find(&Surroundings { embree_dir: Some(home.into()), ..surroundings() }).unwrap();
+        let found =
+            Library::find(&Surroundings { embree_dir: Some(home.into()), ..surroundings() })
+                .unwrap();
         assert_eq!(found.path().parent(), Some(home));
     }
 }

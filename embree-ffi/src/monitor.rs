@@ -36,7 +36,11 @@ impl Memory {
 }
 
 /// Called before (`post` false) or after an allocation, and with a negative number around a release.
-pub(crate) unsafe extern "C" fn watch_memory(memory: *mut c_void, bytes: isize, post: bool) -> bool {
+pub(crate) unsafe extern "C" fn watch_memory(
+    memory: *mut c_void,
+    bytes: isize,
+    post: bool,
+) -> bool {
     // SAFETY: the device was given a `Memory` that outlives it, and shares it only by reference.
     let memory = unsafe { &*memory.cast::<Memory>() };
     let go_on = match &memory.monitor {

@@ -5,8 +5,8 @@ use std::ptr::null_mut;
 use crate::{
     Error, Hit, Ray, Scene, Verdict,
     bindings::{
-        Embree, RTCDeviceProperty, RTCFeatureFlags, RTCOccludedArguments, RTCRay4, RTCRay8, RTCRay16, RTCRayQueryFlags,
-        RTCScene,
+        Embree, RTCDeviceProperty, RTCFeatureFlags, RTCOccludedArguments, RTCRay4, RTCRay8,
+        RTCRay16, RTCRayQueryFlags, RTCScene,
     },
     filter::FilterContext,
 };
@@ -139,7 +139,13 @@ pub trait PacketWidth<const N: usize>: sealed::Sealed {
     /// # Safety
     /// As `rtcOccluded4` and its like: a committed scene of a device with native packets of this width.
     #[doc(hidden)]
-    unsafe fn occluded(api: &Embree, lanes: &Lanes<N>, scene: RTCScene, rays: &mut RayPacket<N>, arguments: *mut RTCOccludedArguments);
+    unsafe fn occluded(
+        api: &Embree,
+        lanes: &Lanes<N>,
+        scene: RTCScene,
+        rays: &mut RayPacket<N>,
+        arguments: *mut RTCOccludedArguments,
+    );
 }
 
 mod sealed {
@@ -203,7 +209,10 @@ impl Scene {
     }
 
     /// [`packets`](Self::packets) with filters; [`Error::PacketFiltersNotBuilt`] where the scene was not built for them.
-    pub fn filtered_packets<const N: usize>(&self, coherence: Coherence) -> Result<FilteredPackets<'_, N>, Error>
+    pub fn filtered_packets<const N: usize>(
+        &self,
+        coherence: Coherence,
+    ) -> Result<FilteredPackets<'_, N>, Error>
     where
         Width<N>: PacketWidth<N>,
     {
@@ -239,7 +248,12 @@ where
     }
 
     #[inline]
-    fn ask(&self, lanes: &Lanes<N>, rays: &mut RayPacket<N>, arguments: &mut RTCOccludedArguments) -> u32 {
+    fn ask(
+        &self,
+        lanes: &Lanes<N>,
+        rays: &mut RayPacket<N>,
+        arguments: &mut RTCOccludedArguments,
+    ) -> u32 {
         let asked = lanes.bits() & !rays.blocked();
         // SAFETY: the scene is committed and alive, and its device has kernels of this width, or there were no `Packets`.
         unsafe { Width::<N>::occluded(self.scene.api(), lanes, self.scene.raw(), rays, arguments) };
@@ -259,7 +273,12 @@ where
     ///
     /// As [`Scene::occluded_with`] otherwise.
     #[inline]
-    pub fn occluded_with(&self, lanes: &Lanes<N>, rays: &mut RayPacket<N>, filter: impl FnMut(usize, &Hit) -> Verdict) -> u32 {
+    pub fn occluded_with(
+        &self,
+        lanes: &Lanes<N>,
+        rays: &mut RayPacket<N>,
+        filter: impl FnMut(usize, &Hit) -> Verdict,
+    ) -> u32 {
         let mut context = FilterContext::new(filter);
         let mut arguments = context.occluded_arguments(self.0.flags);
         let blocked = self.0.ask(lanes, rays, &mut arguments);

@@ -67,7 +67,11 @@ impl Scene {
     /// The nearest hit that `filter` accepts. It is asked about farther hits too, in no order. Panics as in
     /// [`occluded_with`](Self::occluded_with).
     #[inline]
-    pub fn intersect_with(&self, ray: &Ray, mut filter: impl FnMut(&Hit) -> Verdict) -> Option<Hit> {
+    pub fn intersect_with(
+        &self,
+        ray: &Ray,
+        mut filter: impl FnMut(&Hit) -> Verdict,
+    ) -> Option<Hit> {
         let mut both = ray.with_room_for_hit();
         let mut context = FilterContext::new(|_, hit: &Hit| filter(hit));
         let mut arguments = context.intersect_arguments();

@@ -44,7 +44,16 @@ impl Ray {
     /// From `origin` along `direction`, `0 <= t <= infinity`.
     #[inline]
     pub const fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
-        Self { origin, tnear: 0.0, direction, time: 0.0, tfar: f32::INFINITY, mask: !0, id: 0, flags: 0 }
+        Self {
+            origin,
+            tnear: 0.0,
+            direction,
+            time: 0.0,
+            tfar: f32::INFINITY,
+            mask: !0,
+            id: 0,
+            flags: 0,
+        }
     }
 
     /// From `from` (t = 0) to `to` (t = 1).
@@ -85,7 +94,8 @@ impl Ray {
     pub(crate) fn with_room_for_hit(self) -> RTCRayHit {
         let Self { origin: [org_x, org_y, org_z], direction: [dir_x, dir_y, dir_z], .. } = self;
         let Self { tnear, time, tfar, mask, id, flags, .. } = self;
-        let ray = RTCRay { org_x, org_y, org_z, tnear, dir_x, dir_y, dir_z, time, tfar, mask, id, flags };
+        let ray =
+            RTCRay { org_x, org_y, org_z, tnear, dir_x, dir_y, dir_z, time, tfar, mask, id, flags };
         let (nowhere, none) = (0.0, !0);
         let hit = RTCHit {
             Ng_x: nowhere,

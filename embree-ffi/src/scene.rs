@@ -5,7 +5,8 @@ use std::{ffi::c_void, fmt, num::NonZeroU32, ops::ControlFlow, panic::resume_unw
 use crate::{
     Device, Error,
     bindings::{
-        Embree, RTCBufferType, RTCBuildQuality, RTCFormat, RTCGeometry, RTCGeometryType, RTCScene, RTCSceneFlags,
+        Embree, RTCBufferType, RTCBuildQuality, RTCFormat, RTCGeometry, RTCGeometryType, RTCScene,
+        RTCSceneFlags,
     },
     monitor::{Progress, watch_progress},
 };
@@ -57,7 +58,10 @@ impl SceneOptions {
         RTCSceneFlags(
             flag(self.robust, RTCSceneFlags::RTC_SCENE_FLAG_ROBUST)
                 | flag(self.compact, RTCSceneFlags::RTC_SCENE_FLAG_COMPACT)
-                | flag(self.packet_filters, RTCSceneFlags::RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS),
+                | flag(
+                    self.packet_filters,
+                    RTCSceneFlags::RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS,
+                ),
         )
     }
 }
@@ -82,7 +86,9 @@ impl<'m> Mesh<'m> {
     }
 
     fn check(&self) -> Result<(), Error> {
-        for (what, count) in [("vertices", self.vertices.len()), ("triangles", self.triangles.len())] {
+        for (what, count) in
+            [("vertices", self.vertices.len()), ("triangles", self.triangles.len())]
+        {
             if count >= u32::MAX as usize {
                 return Err(Error::TooMany { what, count });
             }
@@ -136,13 +142,25 @@ impl SceneBuilder {
         let device = &self.owner.device;
         let api = &device.library().api;
         // SAFETY: the device is alive.
-        let raw = unsafe { api.rtcNewGeometry(device.raw(), RTCGeometryType::RTC_GEOMETRY_TYPE_TRIANGLE) };
+        let raw = unsafe {
+            api.rtcNewGeometry(device.raw(), RTCGeometryType::RTC_GEOMETRY_TYPE_TRIANGLE)
+        };
         if raw.is_null() {
             return Err(unexplained(device));
         }
         let geometry = GeometryOwner { api, raw };
-        geometry.fill(RTCBufferType::RTC_BUFFER_TYPE_VERTEX, RTCFormat::RTC_FORMAT_FLOAT3, mesh.vertices, device)?;
-        geometry.fill(RTCBufferType::RTC_BUFFER_TYPE_INDEX, RTCFormat::RTC_FORMAT_UINT3, mesh.triangles, device)?;
+        geometry.fill(
+            RTCBufferType::RTC_BUFFER_TYPE_VERTEX,
+            RTCFormat::RTC_FORMAT_FLOAT3,
+            mesh.vertices,
+            device,
+        )?;
+        geometry.fill(
+            RTCBufferType::RTC_BUFFER_TYPE_INDEX,
+            RTCFormat::RTC_FORMAT_UINT3,
+            mesh.triangles,
+            device,
+        )?;
         // SAFETY: scene and geometry are alive and ours alone. The scene keeps a reference of its own.
         let id = unsafe {
             api.rtcSetGeometryMask(raw, mesh.mask);
@@ -162,13 +180,20 @@ impl SceneBuilder {
     ///
     /// [`ControlFlow::Break`] cancels with [`ErrorCode::Cancelled`](crate::ErrorCode::Cancelled). A panic cancels too, and
     /// goes on from here.
-    pub fn commit_with_progress(self, progress: impl Fn(f64) -> ControlFlow<()> + Sync) -> Result<Scene, Error> {
+    pub fn commit_with_progress(
+        self,
+        progress: impl Fn(f64) -> ControlFlow<()> + Sync,
+    ) -> Result<Scene, Error> {
         let api = &self.owner.device.library().api;
         let raw = self.owner.raw;
         let progress = Progress::new(&progress);
         // SAFETY: the scene is alive and ours alone, and `progress` outlives the build, the only time it is called.
         unsafe {
-            api.rtcSetSceneProgressMonitorFunction(raw, Some(watch_progress), (&raw const progress).cast_mut().cast());
+            api.rtcSetSceneProgressMonitorFunction(
+                raw,
+                Some(watch_progress),
+                (&raw const progress).cast_mut().cast(),
+            );
         }
         let outcome = self.build();
         if let Ok(scene) = &outcome {
@@ -258,10 +283,24 @@ struct GeometryOwner<'a> {
 
 impl GeometryOwner<'_> {
     /// Copies `items` into a new buffer of Embree's.
-    fn fill<T: Copy>(&self, kind: RTCBufferType, format: RTCFormat, items: &[[T; 3]], device: &Device) -> Result<(), Error> {
+    fn fill<T: Copy>(
+        &self,
+        kind: RTCBufferType,
+        format: RTCFormat,
+        items: &[[T; 3]],
+        device: &Device,
+    ) -> Result<(), Error> {
         // SAFETY: the geometry is alive.
-        let buffer: *mut c_void =
-            unsafe { self.api.rtcSetNewGeometryBuffer(self.raw, kind, 0, format, size_of::<[T; 3]>(), items.len()) };
+        let buffer: *mut c_void = unsafe {
+            self.api.rtcSetNewGeometryBuffer(
+                self.raw,
+                kind,
+                0,
+                format,
+                size_of::<[T; 3]>(),
+                items.len(),
+            )
+        };
         if items.is_empty() {
             // Embree then has no buffer to show, or one of no use.
             return device.take_error();
@@ -270,7 +309,9 @@ impl GeometryOwner<'_> {
             return Err(unexplained(device));
         }
         // SAFETY: the buffer was made for as many items of that size, and nobody else knows it yet.
-        unsafe { ptr::copy_nonoverlapping(items.as_ptr().cast::<u8>(), buffer.cast(), size_of_val(items)) };
+        unsafe {
+            ptr::copy_nonoverlapping(items.as_ptr().cast::<u8>(), buffer.cast(), size_of_val(items))
+        };
         Ok(())
     }
 }
@@ -285,5 +326,8 @@ impl Drop for GeometryOwner<'_> {
 /// The error behind a null handle.
 fn unexplained(device: &Device) -> Error {
     let message = || "no reason given".to_owned();
-    device.take_error().err().unwrap_or_else(|| Error::Embree { code: crate::ErrorCode::Unknown, message: message() })
+    device
+        .take_error()
+        .err()
+        .unwrap_or_else(|| Error::Embree { code: crate::ErrorCode::Unknown, message: message() })
 }

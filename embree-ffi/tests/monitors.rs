@@ -4,7 +4,7 @@ mod common;
 
 use std::{
     ops::ControlFlow,
-    panic::{AssertUnwindSafe, catch_unwind},
+    panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
     sync::{
         Arc,
         atomic::{AtomicBool, AtomicIsize, AtomicUsize, Ordering::Relaxed},
@@ -12,17 +12,31 @@ use std::{
 };
 
 use common::*;
-use embree_ffi::{Coherence, DeviceConfig, Error, ErrorCode, Lanes, Mesh, RayPacket, SceneBuilder, SceneOptions, Verdict};
+use embree_ffi::{
+    Coherence, DeviceConfig, Error, ErrorCode, Lanes, Mesh, RayPacket, SceneBuilder, SceneOptions,
+    Verdict,
+};
+
+/// A panic without the report on standard error, which is not captured on Embree's threads.
+fn quiet_panic(text: &'static str) -> ! {
+    resume_unwind(Box::new(text))
+}
 
 /// What a panic carried.
 fn payload(outcome: std::thread::Result<impl Sized>) -> &'static str {
-    outcome.err().and_then(|payload| payload.downcast_ref::<&'static str>().copied()).expect("it panics with a text")
+    outcome
+        .err()
+        .and_then(|payload| payload.downcast_ref::<&'static str>().copied())
+        .expect("it panics with a text")
 }
 
 fn code(outcome: Result<impl Sized, Error>) -> ErrorCode {
     match outcome.err() {
         Some(Error::Embree { code, message }) => {
-            assert!(message.contains("monitor forced termination"), "Embree's own words: {message}");
+            assert!(
+                message.contains("monitor forced termination"),
+                "Embree's own words: {message}"
+            );
             code
         }
         other => panic!("{other:?}"),
@@ -39,7 +53,10 @@ fn memory_is_counted_while_a_scene_lives_and_given_back_after() {
     let buffers = device.memory_used();
     assert!(buffers - before >= size_of_val(&*vertices) + size_of_val(&*triangles));
     let scene = builder.commit().unwrap();
-    assert!(device.memory_used() > buffers + 5000 * 40, "a triangle takes some 60 bytes in the tree");
+    assert!(
+        device.memory_used() > buffers + 5000 * 40,
+        "a triangle takes some 60 bytes in the tree"
+    );
     drop(scene);
     assert_eq!(device.memory_used(), before);
 }
@@ -76,10 +93,11 @@ fn a_memory_monitor_can_forbid_and_nothing_leaks() {
     let limit = Arc::new(AtomicIsize::new(isize::MAX));
     let allowed = limit.clone();
     let held = AtomicIsize::new(0);
-    let monitor = move |bytes: isize| match held.fetch_add(bytes, Relaxed) + bytes > allowed.load(Relaxed) {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
-    };
+    let monitor =
+        move |bytes: isize| match held.fetch_add(bytes, Relaxed) + bytes > allowed.load(Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
     let device = device_with(DeviceConfig::default().memory_monitor(monitor));
     let before = device.memory_used();
     let mut builder = SceneBuilder::new(&device, SceneOptions::default()).unwrap();
@@ -91,7 +109,10 @@ fn a_memory_monitor_can_forbid_and_nothing_leaks() {
     drop(builder);
     assert_eq!(device.memory_used(), before);
     limit.store(isize::MAX, Relaxed);
-    assert!(!soup_scene(&device, SceneOptions::default()).occluded(&up(false)), "the device is as good as before");
+    assert!(
+        !soup_scene(&device, SceneOptions::default()).occluded(&up(false)),
+        "the device is as good as before"
+    );
 }
 
 #[test]
@@ -99,12 +120,21 @@ fn a_panic_in_a_memory_monitor_comes_out_of_the_call_it_cancelled() {
     let (vertices, triangles) = soup(5000);
     let armed = Arc::new(AtomicBool::new(false));
     let trigger = armed.clone();
-    let monitor = move |_| if trigger.load(Relaxed) { panic!("in the memory monitor") } else { ControlFlow::Continue(()) };
+    let monitor = move |_| {
+        if trigger.load(Relaxed) {
+            quiet_panic("in the memory monitor")
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
     let device = device_with(DeviceConfig::default().memory_monitor(monitor));
     let mut builder = SceneBuilder::new(&device, SceneOptions::default()).unwrap();
     builder.add(Mesh::new(&vertices, &triangles)).unwrap();
     armed.store(true, Relaxed);
-    assert_eq!(payload(catch_unwind(AssertUnwindSafe(|| builder.commit()))), "in the memory monitor");
+    assert_eq!(
+        payload(catch_unwind(AssertUnwindSafe(|| builder.commit()))),
+        "in the memory monitor"
+    );
 }
 
 #[test]
@@ -131,7 +161,10 @@ fn a_cancelled_build_is_an_error_and_leaves_nothing() {
     let (vertices, triangles) = soup(100_000);
     let mut builder = SceneBuilder::new(&device, SceneOptions::default()).unwrap();
     builder.add(Mesh::new(&vertices, &triangles)).unwrap();
-    assert_eq!(code(builder.commit_with_progress(|_| ControlFlow::Break(()))), ErrorCode::Cancelled);
+    assert_eq!(
+        code(builder.commit_with_progress(|_| ControlFlow::Break(()))),
+        ErrorCode::Cancelled
+    );
     assert_eq!(device.memory_used(), before);
     assert!(soup_scene(&device, SceneOptions::default()).check().is_ok());
 }
@@ -142,7 +175,9 @@ fn a_panic_in_a_progress_monitor_comes_out_of_commit() {
     let (vertices, triangles) = soup(100_000);
     let mut builder = SceneBuilder::new(&device, SceneOptions::default()).unwrap();
     builder.add(Mesh::new(&vertices, &triangles)).unwrap();
-    let outcome = catch_unwind(AssertUnwindSafe(|| builder.commit_with_progress(|_| panic!("in the progress monitor"))));
+    let outcome = catch_unwind(AssertUnwindSafe(|| {
+        builder.commit_with_progress(|_| quiet_panic("in the progress monitor"))
+    }));
     assert_eq!(payload(outcome), "in the progress monitor");
     assert_eq!(device.memory_used(), 0);
 }
@@ -153,7 +188,7 @@ fn a_panic_in_a_filter_comes_out_of_the_query_and_the_scene_lives_on() {
     let calls = AtomicUsize::new(0);
     let panic = |_: &embree_ffi::Hit| -> Verdict {
         calls.fetch_add(1, Relaxed);
-        panic!("in the filter")
+        quiet_panic("in the filter")
     };
     let outcome = catch_unwind(AssertUnwindSafe(|| scene.occluded_with(&up(true), panic)));
     assert_eq!(payload(outcome), "in the filter");
@@ -162,7 +197,9 @@ fn a_panic_in_a_filter_comes_out_of_the_query_and_the_scene_lives_on() {
     assert_eq!(payload(outcome), "in the filter");
     let packets = scene.filtered_packets::<4>(Coherence::Coherent).unwrap();
     let (mut packet, lanes): (_, Lanes<4>) = RayPacket::from_rays(&[up(true); 4]);
-    let outcome = catch_unwind(AssertUnwindSafe(|| packets.occluded_with(&lanes, &mut packet, |_, hit| panic(hit))));
+    let outcome = catch_unwind(AssertUnwindSafe(|| {
+        packets.occluded_with(&lanes, &mut packet, |_, hit| panic(hit))
+    }));
     assert_eq!(payload(outcome), "in the filter");
     assert_eq!(calls.load(Relaxed), 3);
     assert!(scene.occluded(&up(true)));

@@ -4,7 +4,8 @@ mod common;
 
 use common::*;
 use embree_ffi::{
-    Coherence, DeviceConfig, Error, Isa, Lanes, PacketWidth, Ray, RayPacket, Scene, SceneOptions, Verdict, Width,
+    Coherence, DeviceConfig, Error, Isa, Lanes, PacketWidth, Ray, RayPacket, Scene, SceneOptions,
+    Verdict, Width,
 };
 
 fn robust() -> SceneOptions {
@@ -21,7 +22,10 @@ where
     let rays = segments(3 * N * 20 + 1);
     for rays in rays.chunks(N) {
         let (packet, lanes) = RayPacket::<N>::from_rays(rays);
-        let expected = rays.iter().enumerate().fold(0, |bits, (lane, ray)| bits | u32::from(scene.occluded(ray)) << lane);
+        let expected = rays
+            .iter()
+            .enumerate()
+            .fold(0, |bits, (lane, ray)| bits | u32::from(scene.occluded(ray)) << lane);
         let mut asked = packet;
         assert_eq!(packets.occluded(&lanes, &mut asked), expected);
         for lane in 0..N {
@@ -31,9 +35,11 @@ where
         for (lane, occluder) in occluders.iter().enumerate() {
             assert_eq!(occluder.is_some(), expected >> lane & 1 == 1);
             if let Some(occluder) = occluder {
-                assert!(scene.occluded_with(&rays[lane], |hit| match hit.primitive == occluder.primitive {
-                    true => Verdict::Accept,
-                    false => Verdict::Reject,
+                assert!(scene.occluded_with(&rays[lane], |hit| {
+                    match hit.primitive == occluder.primitive {
+                        true => Verdict::Accept,
+                        false => Verdict::Reject,
+                    }
                 }));
             }
         }
@@ -99,13 +105,22 @@ fn a_packet_filter_is_told_lane_and_hit() {
 fn packets_without_kernels_for_them_are_an_error_that_says_so() {
     let scene = stack(&device_with(DeviceConfig::default().isa(Isa::Sse2)), &[0.0], robust());
     assert!(scene.packets::<4>(Coherence::Coherent).is_ok());
-    assert_eq!(scene.packets::<8>(Coherence::Coherent).unwrap_err(), Error::PacketWidth { width: 8 });
+    assert_eq!(
+        scene.packets::<8>(Coherence::Coherent).unwrap_err(),
+        Error::PacketWidth { width: 8 }
+    );
     let error = scene.filtered_packets::<16>(Coherence::Coherent).unwrap_err();
-    assert_eq!(error.to_string(), "this device has no native packets of 16 rays: 8 need AVX, 16 need AVX-512");
+    assert_eq!(
+        error.to_string(),
+        "this device has no native packets of 16 rays: 8 need AVX, 16 need AVX-512"
+    );
 }
 
 #[test]
 fn filtering_packets_of_a_scene_not_built_for_it_is_an_error() {
     let scene = stack(&device(), &[0.0], SceneOptions::default());
-    assert_eq!(scene.filtered_packets::<4>(Coherence::Incoherent).unwrap_err(), Error::PacketFiltersNotBuilt);
+    assert_eq!(
+        scene.filtered_packets::<4>(Coherence::Incoherent).unwrap_err(),
+        Error::PacketFiltersNotBuilt
+    );
 }

@@ -38,7 +38,9 @@ fn segments_end_where_they_end() {
     assert!(scene.occluded(&Ray::between(point(-1.0), point(1.0))));
     assert!(!scene.occluded(&Ray::between(point(-1.0), point(-0.01))));
     assert!(!scene.occluded(&up(true).with_interval(1.5, 9.0)));
-    for (tnear, tfar) in [(2.0, 1.0), (0.0, -1.0), (0.0, f32::NEG_INFINITY), (0.0, f32::NAN), (f32::NAN, 9.0)] {
+    for (tnear, tfar) in
+        [(2.0, 1.0), (0.0, -1.0), (0.0, f32::NEG_INFINITY), (0.0, f32::NAN), (f32::NAN, 9.0)]
+    {
         let ray = up(true).with_interval(tnear, tfar);
         assert!(!scene.occluded(&ray), "{tnear} {tfar}");
         assert_eq!(scene.occluder(&ray), None, "{tnear} {tfar}");
@@ -58,9 +60,11 @@ fn occluder_names_a_triangle_that_blocks_exactly_when_occluded() {
             if let Some(Hit { primitive, t, .. }) = occluder {
                 blocked += 1;
                 // Only that triangle, and it is still there.
-                assert!(scene.occluded_with(&ray, |hit| match hit.primitive == primitive && hit.t == t {
-                    true => Verdict::Accept,
-                    false => Verdict::Reject,
+                assert!(scene.occluded_with(&ray, |hit| {
+                    match hit.primitive == primitive && hit.t == t {
+                        true => Verdict::Accept,
+                        false => Verdict::Reject,
+                    }
                 }));
             }
         }
@@ -97,7 +101,9 @@ fn a_filter_that_rejects_gathers_every_transparent_occluder_and_blocks_nothing()
 #[test]
 fn a_filter_that_accepts_one_mesh_blocks_only_there() {
     let scene = stack(&device(), &[0.0, 1.0], SceneOptions::default());
-    let only = |wanted: u32| move |hit: &Hit| if hit.geometry == wanted { Verdict::Accept } else { Verdict::Reject };
+    let only = |wanted: u32| {
+        move |hit: &Hit| if hit.geometry == wanted { Verdict::Accept } else { Verdict::Reject }
+    };
     assert!(scene.occluded_with(&up(true), only(1)));
     assert!(!scene.occluded_with(&up(true), only(2)));
     assert_eq!(scene.intersect_with(&up(true), only(1)).map(|hit| hit.t), Some(2.0));
@@ -126,7 +132,9 @@ fn a_committed_scene_is_asked_by_many_threads_at_once() {
     let alone: Vec<bool> = rays.iter().map(|ray| scene.occluded(ray)).collect();
     std::thread::scope(|scope| {
         for _ in 0..4 {
-            scope.spawn(|| assert!(rays.iter().zip(&alone).all(|(ray, &answer)| scene.occluded(ray) == answer)));
+            scope.spawn(|| {
+                assert!(rays.iter().zip(&alone).all(|(ray, &answer)| scene.occluded(ray) == answer))
+            });
         }
     });
     scene.check().unwrap();

@@ -6,8 +6,8 @@ use std::{num::NonZeroU32, process::Command};
 
 use common::*;
 use embree_ffi::{
-    BuildQuality, Coherence, DeviceConfig, Error, Hit, Isa, Lanes, Mesh, Ray, RayPacket, SceneBuilder, SceneOptions,
-    Verdict, bindings,
+    BuildQuality, Coherence, DeviceConfig, Error, Hit, Isa, Lanes, Mesh, Ray, RayPacket,
+    SceneBuilder, SceneOptions, Verdict, bindings,
 };
 
 /// Embree reads 16 bytes at the last vertex of 12. It gets its own, padded copy: so it does not matter what lies behind
@@ -33,7 +33,14 @@ fn vertices_need_no_padding_and_are_copied() {
 fn vertices_may_end_at_the_end_of_readable_memory() {
     use std::ffi::{c_int, c_void};
     unsafe extern "C" {
-        fn mmap(at: *mut c_void, length: usize, protection: c_int, flags: c_int, file: c_int, offset: i64) -> *mut c_void;
+        fn mmap(
+            at: *mut c_void,
+            length: usize,
+            protection: c_int,
+            flags: c_int,
+            file: c_int,
+            offset: i64,
+        ) -> *mut c_void;
         fn mprotect(at: *mut c_void, length: usize, protection: c_int) -> c_int;
         fn munmap(at: *mut c_void, length: usize) -> c_int;
     }
@@ -42,7 +49,8 @@ fn vertices_may_end_at_the_end_of_readable_memory() {
     let vertices = square(0.0);
     // SAFETY: two pages of our own, of which the second is closed; the slice ends where it begins.
     unsafe {
-        let pages = mmap(std::ptr::null_mut(), 2 * PAGE, read_and_write, private_and_anonymous, -1, 0);
+        let pages =
+            mmap(std::ptr::null_mut(), 2 * PAGE, read_and_write, private_and_anonymous, -1, 0);
         assert_ne!(pages as isize, -1);
         assert_eq!(mprotect(pages.byte_add(PAGE), PAGE, 0), 0);
         let place = pages.byte_add(PAGE - size_of_val(&vertices)).cast::<[f32; 3]>();
@@ -67,14 +75,18 @@ fn no_ray_has_a_mask_of_zero() {
     packet.origin = [[0.5; 4], [0.25; 4], [-1.0; 4]];
     packet.direction[2] = [1.0; 4];
     packet.tfar = [9.0; 4];
-    assert_eq!(scene.packets(Coherence::Incoherent).unwrap().occluded(&Lanes::ALL, &mut packet), 0b1111);
+    assert_eq!(
+        scene.packets(Coherence::Incoherent).unwrap().occluded(&Lanes::ALL, &mut packet),
+        0b1111
+    );
 }
 
 /// Without kernels for 8 or 16 rays Embree treats the packet as a ray and hit packet, and writes behind it.
 #[test]
 fn wide_packets_without_native_support_are_refused_not_run() {
     for isa in available() {
-        let scene = stack(&device_with(DeviceConfig::default().isa(isa)), &[0.0], SceneOptions::default());
+        let scene =
+            stack(&device_with(DeviceConfig::default().isa(isa)), &[0.0], SceneOptions::default());
         let properties = scene.device().properties();
         assert_eq!(properties.native_packets_of_8, isa >= Isa::Avx);
         assert_eq!(properties.native_packets_of_16, isa >= Isa::Avx512);
@@ -94,11 +106,15 @@ fn packets_are_not_written_beyond_their_end() {
     {
         for heights in [&[][..], &[0.0], &[0.0, 1.0, 2.0, 3.0, 4.0]] {
             let scene = stack(&device(), heights, SceneOptions::default().packet_filters(true));
-            let mut guarded = Guarded(RayPacket::<N>::from_rays(&[up(true); N]).0, [0xabab_abab_abab_abab; 128]);
+            let mut guarded =
+                Guarded(RayPacket::<N>::from_rays(&[up(true); N]).0, [0xabab_abab_abab_abab; 128]);
             let Ok(packets) = scene.packets::<N>(Coherence::Incoherent) else { continue };
             packets.occluded(&Lanes::ALL, &mut guarded.0);
             guarded.0.tfar = [9.0; N];
-            scene.filtered_packets::<N>(Coherence::Coherent).unwrap().occluders(&Lanes::ALL, &mut guarded.0);
+            scene
+                .filtered_packets::<N>(Coherence::Coherent)
+                .unwrap()
+                .occluders(&Lanes::ALL, &mut guarded.0);
             assert_eq!(guarded.1, [0xabab_abab_abab_abab; 128]);
         }
     }
@@ -130,7 +146,11 @@ fn rays_and_lanes_are_aligned_wherever_they_lie() {
 #[test]
 fn the_hit_has_room_for_what_4_3_writes() {
     assert_eq!(size_of::<bindings::RTCRayHit>(), 96);
-    assert_eq!(std::mem::offset_of!(bindings::RTCRayHit, hit) + std::mem::offset_of!(bindings::RTCHit, instPrimID), 80);
+    assert_eq!(
+        std::mem::offset_of!(bindings::RTCRayHit, hit)
+            + std::mem::offset_of!(bindings::RTCHit, instPrimID),
+        80
+    );
 }
 
 /// With the context of 4.2 (4 bytes) Embree 4.3 reads beyond the end when a filter is called. Ours has 8, then our own.
@@ -152,7 +172,10 @@ fn a_filter_works_because_the_context_has_the_size_of_4_3() {
 /// Error 7 is new in 4.3.3: as a Rust enumeration of the known ones it would be undefined behaviour. Here it is a number.
 #[test]
 fn unknown_numbers_from_embree_are_numbers() {
-    assert_eq!(bindings::RTCError(7), bindings::RTCError::RTC_ERROR_LEVEL_ZERO_RAYTRACING_SUPPORT_MISSING);
+    assert_eq!(
+        bindings::RTCError(7),
+        bindings::RTCError::RTC_ERROR_LEVEL_ZERO_RAYTRACING_SUPPORT_MISSING
+    );
     assert_ne!(bindings::RTCError(4711), bindings::RTCError::RTC_ERROR_NONE);
 }
 

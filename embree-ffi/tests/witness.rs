@@ -43,7 +43,20 @@ fn rays_and_arguments_are_as_they_were_in_4_2() {
     same!(RTCRay { org_x, org_y, org_z, tnear, dir_x, dir_y, dir_z, time, tfar, mask, id, flags });
     same!(RTCRay4 { org_x, org_y, org_z, tnear, dir_x, dir_y, dir_z, time, tfar, mask, id, flags });
     same!(RTCRay8 { org_x, org_y, org_z, tnear, dir_x, dir_y, dir_z, time, tfar, mask, id, flags });
-    same!(RTCRay16 { org_x, org_y, org_z, tnear, dir_x, dir_y, dir_z, time, tfar, mask, id, flags });
+    same!(RTCRay16 {
+        org_x,
+        org_y,
+        org_z,
+        tnear,
+        dir_x,
+        dir_y,
+        dir_z,
+        time,
+        tfar,
+        mask,
+        id,
+        flags
+    });
     same!(RTCFilterFunctionNArguments { valid, geometryUserPtr, context, ray, hit, N });
     same!(RTCIntersectArguments { flags, feature_mask, context, filter, intersect });
     same!(RTCOccludedArguments { flags, feature_mask, context, filter, occluded });
@@ -56,7 +69,10 @@ fn hits_and_contexts_grew_in_4_3_behind_what_they_had() {
     assert_eq!(compare!(RTCHit8 { Ng_x, Ng_y, Ng_z, u, v, primID, geomID, instID }), (288, 256));
     assert_eq!(compare!(RTCHit16 { Ng_x, Ng_y, Ng_z, u, v, primID, geomID, instID }), (576, 512));
     assert_eq!((size_of::<ours::RTCRayHit>(), size_of::<theirs::RTCRayHit>()), (96, 80));
-    assert_eq!(std::mem::offset_of!(ours::RTCRayHit, hit), std::mem::offset_of!(theirs::RTCRayHit, hit));
+    assert_eq!(
+        std::mem::offset_of!(ours::RTCRayHit, hit),
+        std::mem::offset_of!(theirs::RTCRayHit, hit)
+    );
     assert_eq!(compare!(RTCRayQueryContext { instID }), (8, 4));
 }
 
@@ -159,9 +175,17 @@ fn functions_have_the_signatures_of_4_2() {
         rtcOccluded8(_, _, _, _),
         rtcOccluded16(_, _, _, _),
     ];
-    let table = include_str!("../src/bindings.rs").lines().filter_map(|line| line.strip_prefix("    pub rtc"));
-    let ours: BTreeSet<String> = table.filter_map(|line| Some(format!("rtc{}", line.split_once(": unsafe extern")?.0))).collect();
-    assert_eq!(compared, ours.iter().map(String::as_str).collect(), "every function of ours has its witness");
+    let table = include_str!("../src/bindings.rs")
+        .lines()
+        .filter_map(|line| line.strip_prefix("    pub rtc"));
+    let ours: BTreeSet<String> = table
+        .filter_map(|line| Some(format!("rtc{}", line.split_once(": unsafe extern")?.0)))
+        .collect();
+    assert_eq!(
+        compared,
+        ours.iter().map(String::as_str).collect(),
+        "every function of ours has its witness"
+    );
 }
 
 #[test]

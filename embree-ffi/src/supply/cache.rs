@@ -9,7 +9,8 @@ use super::wheel::{Platform, WHEEL_VERSION};
 
 /// The user's folder for caches, by the custom of the system.
 pub fn cache_root() -> Option<PathBuf> {
-    let folder = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let folder =
+        |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     folder("XDG_CACHE_HOME").or_else(|| {
         if cfg!(windows) {
             folder("LOCALAPPDATA")

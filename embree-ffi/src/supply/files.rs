@@ -17,7 +17,10 @@ pub fn library_in(folder: &Path) -> Option<PathBuf> {
         let mut found: Vec<PathBuf> = std::fs::read_dir(folder.join(inner))
             .ok()?
             .filter_map(|entry| Some(entry.ok()?.path()))
-            .filter(|path| path.is_file() && path.file_name().and_then(|name| name.to_str()).is_some_and(is_library))
+            .filter(|path| {
+                path.is_file()
+                    && path.file_name().and_then(|name| name.to_str()).is_some_and(is_library)
+            })
             .collect();
         // The soname sorts before the full version and after the link for compilers; any of them is the same file.
         found.sort();

@@ -66,18 +66,28 @@ impl Surroundings {
         if let Some(folder) = &self.embree_dir {
             return match library_in(folder) {
                 Some(path) => Ok(vec![Candidate { path, origin: "EMBREE_DIR" }]),
-                None => Err(format!("EMBREE_DIR is {}, which holds no Embree 4 library", folder.display())),
+                None => Err(format!(
+                    "EMBREE_DIR is {}, which holds no Embree 4 library",
+                    folder.display()
+                )),
             };
         }
         let mut found = Vec::new();
         if let Some(path) = &self.recorded {
             let bare = path.components().count() == 1;
             if bare || path.is_file() {
-                found.push(Candidate { path: path.clone(), origin: if bare { "the system" } else { "the build" } });
+                found.push(Candidate {
+                    path: path.clone(),
+                    origin: if bare { "the system" } else { "the build" },
+                });
             }
         }
-        found.extend(self.cached.iter().map(|path| Candidate { path: path.clone(), origin: "the cache" }));
-        found.extend(self.system.iter().map(|name| Candidate { path: name.into(), origin: "the system" }));
+        found.extend(
+            self.cached.iter().map(|path| Candidate { path: path.clone(), origin: "the cache" }),
+        );
+        found.extend(
+            self.system.iter().map(|name| Candidate { path: name.into(), origin: "the system" }),
+        );
         Ok(found)
     }
 }
@@ -91,7 +101,8 @@ pub unsafe fn open(path: &std::path::Path) -> Result<libloading::Library, libloa
     if path.is_absolute() {
         use libloading::os::windows::{LOAD_WITH_ALTERED_SEARCH_PATH, Library};
         // SAFETY: the caller vouches for the library.
-        return unsafe { Library::load_with_flags(path, LOAD_WITH_ALTERED_SEARCH_PATH) }.map(Into::into);
+        return unsafe { Library::load_with_flags(path, LOAD_WITH_ALTERED_SEARCH_PATH) }
+            .map(Into::into);
     }
     // SAFETY: the caller vouches for the library. On Linux and macOS the wheel's library names its own folder for TBB.
     unsafe { libloading::Library::new(path) }

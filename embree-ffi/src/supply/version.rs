@@ -38,7 +38,9 @@ impl Version {
             ));
         }
         if self.major > 4 {
-            return Err(format!("Embree {self} is too new: only 4.3 and later of the 4 series are known to this crate"));
+            return Err(format!(
+                "Embree {self} is too new: only 4.3 and later of the 4 series are known to this crate"
+            ));
         }
         Ok(())
     }
@@ -54,9 +56,14 @@ pub unsafe fn version_of(library: &libloading::Library) -> Result<Version, Strin
     type ReleaseDevice = unsafe extern "C" fn(*mut c_void);
     // SAFETY: these are the types of these functions in every Embree 4; the device is released once, after its last use.
     unsafe {
-        let new_device = library.get::<NewDevice>(b"rtcNewDevice\0").map_err(|error| one_line(&error))?;
-        let property = library.get::<GetDeviceProperty>(b"rtcGetDeviceProperty\0").map_err(|error| one_line(&error))?;
-        let release = library.get::<ReleaseDevice>(b"rtcReleaseDevice\0").map_err(|error| one_line(&error))?;
+        let new_device =
+            library.get::<NewDevice>(b"rtcNewDevice\0").map_err(|error| one_line(&error))?;
+        let property = library
+            .get::<GetDeviceProperty>(b"rtcGetDeviceProperty\0")
+            .map_err(|error| one_line(&error))?;
+        let release = library
+            .get::<ReleaseDevice>(b"rtcReleaseDevice\0")
+            .map_err(|error| one_line(&error))?;
         let device = new_device(c"".as_ptr());
         if device.is_null() {
             return Err("it makes no device on this machine".into());
@@ -103,8 +110,18 @@ mod tests {
     #[test]
     fn older_and_newer_are_refused_with_the_reason() {
         for number in [0, 31_300, 40_000, 40_200, 40_299] {
-            assert!(Version::from_number(number).check().unwrap_err().contains("RTCRayQueryContext larger"));
+            assert!(
+                Version::from_number(number)
+                    .check()
+                    .unwrap_err()
+                    .contains("RTCRayQueryContext larger")
+            );
         }
-        assert!(Version::from_number(50_000).check().unwrap_err().starts_with("Embree 5.0.0 is too new"));
+        assert!(
+            Version::from_number(50_000)
+                .check()
+                .unwrap_err()
+                .starts_with("Embree 5.0.0 is too new")
+        );
     }
 }

@@ -61,7 +61,9 @@ pub fn soup(count: usize) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
             [0, 1, 2].map(|axis| centre[axis] + 0.1 * offset[axis])
         }));
     }
-    let triangles = (0..count as u32).map(|triangle| [3 * triangle, 3 * triangle + 1, 3 * triangle + 2]).collect();
+    let triangles = (0..count as u32)
+        .map(|triangle| [3 * triangle, 3 * triangle + 1, 3 * triangle + 2])
+        .collect();
     (vertices, triangles)
 }
 
