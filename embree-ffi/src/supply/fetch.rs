@@ -55,7 +55,7 @@ fn fill(draft: &Path, platform: &Platform, python: &Path) -> Result<(), String> 
         "--no-input",
         "--no-deps",
     ])
-    .args(["--retries", "1", "--timeout", "20", "--only-binary=:all:", "--implementation", "cp"])
+    .args(["--retries", "1", "--timeout", "10", "--only-binary=:all:", "--implementation", "cp"])
     .args(["--python-version", "3.12", "--abi", "cp312", "--platform", platform.pip_tag, "--dest"])
     .arg(draft)
     .arg(format!("embreex=={WHEEL_VERSION}"));
