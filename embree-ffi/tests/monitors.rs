@@ -151,7 +151,7 @@ fn progress_runs_to_the_end() {
     });
     assert!(scene.is_ok());
     assert!(calls.load(Relaxed) > 1);
-    assert!((90..=110).contains(&hundredths.load(Relaxed)), "{hundredths:?} %");
+    assert!(hundredths.load(Relaxed) >= 90, "{hundredths:?} %");
 }
 
 #[test]
