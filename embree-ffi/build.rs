@@ -22,8 +22,6 @@ fn main() {
             }
         }
         Err(reason) => {
-            // A path that never exists makes cargo run us every time: so a failed fetch is tried anew.
-            println!("cargo:rerun-if-changed=there-is-no-embree");
             println!("cargo:rustc-env=EMBREE_FFI_LIBRARY=");
             println!("cargo:rustc-env=EMBREE_FFI_REASON={reason}");
             println!("cargo:warning=embree-ffi builds without Embree: {reason}");
@@ -50,12 +48,19 @@ fn settle() -> Result<String, String> {
     if let Some(path) = supply::cached_library(&platform) {
         return Ok(watched(&path));
     }
+    fetched(&platform).inspect_err(|_| {
+        // A path that never exists makes cargo run us every time: so a failed fetch is tried anew.
+        println!("cargo:rerun-if-changed=there-is-no-embree");
+    })
+}
+
+fn fetched(platform: &Platform) -> Result<String, String> {
     if env::var("CARGO_NET_OFFLINE").is_ok_and(|word| word == "true")
         || env::var_os("DOCS_RS").is_some()
     {
         return Err("it is not in the cache, and this build is offline".into());
     }
-    supply::fetch(&platform).map(|path| watched(&path))
+    supply::fetch(platform).map(|path| watched(&path))
 }
 
 /// Cargo runs us again when the file is gone: so a deleted cache is refilled.
