@@ -1,9 +1,8 @@
 //! Spanky the snare drum.
 
-use glam::{DAffine3, DVec2, DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 
 use super::{MaterialId, Model};
-use crate::geometry::surface::Cubic;
 use crate::scene::{Camera, Light, Material};
 
 /// Puts the scene together.
@@ -46,10 +45,7 @@ pub(super) fn describe(model: &mut Model) {
 
 fn body(model: &mut Model, shell: MaterialId, head: MaterialId) {
     let (radius, low, high) = (0.18, 0.14, 0.28);
-    let line = |a, b| Cubic::line(a, b);
-    let bottom = line(DVec2::new(0.0, low), DVec2::new(radius, low));
-    let side = line(DVec2::new(radius, low), DVec2::new(radius, high));
-    let top = line(DVec2::new(radius, high), DVec2::new(0.0, high));
-    model.lathe(&[(side, 60)], 240, shell, DAffine3::IDENTITY);
-    model.lathe(&[(bottom, 30), (top, 33)], 240, head, DAffine3::IDENTITY);
+    model.lathe(&[(&[(radius, low), (radius, high)], 60)], 240, shell, DAffine3::IDENTITY);
+    model.lathe(&[(&[(0.0, low), (radius, low)], 30)], 240, head, DAffine3::IDENTITY);
+    model.lathe(&[(&[(radius, high), (0.0, high)], 33)], 240, head, DAffine3::IDENTITY);
 }
