@@ -1,6 +1,8 @@
 //! Rays, triangles, boxes: the bits every engine is given.
 
 mod bounds;
+pub mod intersect;
+pub mod lanes;
 mod ray;
 pub mod surface;
 mod triangles;

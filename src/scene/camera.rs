@@ -25,7 +25,15 @@ impl Camera {
     /// Where `up` is parallel to the view, another one is taken; `field_of_view` is vertical, in radians.
     #[must_use]
     pub fn look_at(position: DVec3, target: DVec3, up: DVec3, field_of_view: f64) -> Self {
-        let forward = (target - position).normalize_or(DVec3::NEG_Z);
+        Self::facing(position, target - position, up, field_of_view)
+    }
+
+    /// A camera at `position` that looks along `forward`, which may have any length.
+    ///
+    /// Where `up` is parallel to the view, another one is taken; `field_of_view` is vertical, in radians.
+    #[must_use]
+    pub fn facing(position: DVec3, forward: DVec3, up: DVec3, field_of_view: f64) -> Self {
+        let forward = forward.normalize_or(DVec3::NEG_Z);
         let right =
             forward.cross(up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
         Self { position, right, up: right.cross(forward), forward, field_of_view }
@@ -40,5 +48,14 @@ impl Camera {
         let y = (1.0 - 2.0 * place.y) * half_height;
         let direction = self.forward + x * self.right + y * self.up;
         Ray::towards(self.position.as_vec3(), direction.normalize().as_vec3())
+    }
+
+    /// Whether its numbers are finite and its field of view is between 0 and 180 degrees.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        let vectors = [self.position, self.right, self.up, self.forward];
+        vectors.iter().all(|v| v.is_finite())
+            && self.field_of_view > 0.0
+            && self.field_of_view < std::f64::consts::PI
     }
 }

@@ -60,6 +60,10 @@ pub struct Draft {
     pub lights: Vec<Light>,
     /// The camera; a sensible one is added if there is none.
     pub camera: Option<Camera>,
+    /// Which way is up, for a sensible camera; guessed from the shape of the scene if unknown.
+    pub up: Option<DVec3>,
+    /// Whether `ambient` and `background` are to be chosen, for files that say nothing about them.
+    pub choose_surroundings: bool,
     /// See [`Scene::ambient`].
     pub ambient: Vec3,
     /// See [`Scene::background`].
@@ -97,43 +101,50 @@ impl Draft {
         let origin = self.local_origin();
         if origin != DVec3::ZERO {
             self.notes.push(format!(
-                "geometry is far from the origin: moved by ({}, {}, {}) before rounding to single precision",
-                -origin.x, -origin.y, -origin.z
+                "geometry is far from the origin: its local origin is ({}, {}, {}) of the file",
+                origin.x, origin.y, origin.z
             ));
         }
-        let mut kept: Vec<(Triangle, DraftTriangle)> = Vec::with_capacity(self.triangles.len());
-        for triangle in std::mem::take(&mut self.triangles) {
-            let rounded = triangle.corners.map(|corner| (corner - origin).as_vec3());
-            if !rounded.iter().all(|corner| corner.is_finite()) {
+        let round =
+            |triangle: &DraftTriangle| triangle.corners.map(|corner| (corner - origin).as_vec3());
+        let transparent =
+            |triangle: &DraftTriangle| self.materials[triangle.material as usize].is_transparent();
+        // Opaque first, each in the order of the file. Places in the draft rather than copies: a
+        // large draft is the peak of memory.
+        let (mut opaque, mut seen_through) = (Vec::new(), Vec::new());
+        for (index, triangle) in (0u32..).zip(&self.triangles) {
+            let corners = round(triangle);
+            if !corners.iter().all(|corner| corner.is_finite()) {
                 self.dropped.not_finite += 1;
-            } else if has_zero_area(&rounded) {
+            } else if has_zero_area(&corners) {
                 self.dropped.zero_area += 1;
+            } else if transparent(triangle) {
+                seen_through.push(index);
             } else {
-                kept.push((rounded, triangle));
+                opaque.push(index);
             }
         }
         if self.dropped.total() > 0 {
             self.notes.push(format!("dropped {} faces: {}", self.dropped.total(), self.dropped));
         }
-        if kept.is_empty() {
+        if opaque.is_empty() && seen_through.is_empty() {
             let dropped = match self.dropped.total() {
                 0 => String::new(),
                 n => format!(" left of {n} faces: {}", self.dropped),
             };
             return Err(SceneError::Empty { name: self.name, dropped });
         }
-        let transparent =
-            |triangle: &DraftTriangle| self.materials[triangle.material as usize].is_transparent();
-        // Opaque first; the sort is stable, so the order of the file is kept otherwise.
-        kept.sort_by_key(|(_, triangle)| transparent(triangle));
-        let opaque = kept.partition_point(|(_, triangle)| !transparent(triangle));
-        let corners =
-            |part: &[(Triangle, DraftTriangle)]| part.iter().map(|t| t.0).collect::<Vec<_>>();
-        let triangles = Triangles::new(corners(&kept[..opaque]), corners(&kept[opaque..]));
-        let smooth = kept.iter().any(|(_, triangle)| triangle.normals != [Vec3::ZERO; 3]);
-        let normals = if smooth { kept.iter().map(|t| t.1.normals).collect() } else { Vec::new() };
-        let material_of = kept.iter().map(|t| t.1.material).collect();
-        drop(kept);
+        let at = |index: &u32| &self.triangles[*index as usize];
+        let triangles = Triangles::new(
+            opaque.iter().map(|index| round(at(index))),
+            seen_through.iter().map(|index| round(at(index))),
+        );
+        let kept = || opaque.iter().chain(&seen_through).map(at);
+        let material_of = kept().map(|triangle| triangle.material).collect();
+        let smooth = kept().any(|triangle| sound_normals(triangle) != [Vec3::ZERO; 3]);
+        let normals = if smooth { kept().map(sound_normals).collect() } else { Vec::new() };
+        drop((opaque, seen_through, std::mem::take(&mut self.triangles)));
+        self.drop_unsound_lights_and_camera();
 
         let mut scene = Scene {
             name: self.name,
@@ -152,12 +163,31 @@ impl Draft {
         };
         match self.camera {
             Some(camera) => scene.camera = Camera { position: camera.position - origin, ..camera },
-            None => sensible::add_camera(&mut scene),
+            None => sensible::add_camera(&mut scene, self.up),
         }
         if scene.lights.is_empty() {
             sensible::add_lights(&mut scene);
         }
+        if self.choose_surroundings {
+            sensible::choose_surroundings(&mut scene);
+        }
         Ok(scene)
+    }
+
+    /// Numbers that are not finite must not reach a renderer.
+    fn drop_unsound_lights_and_camera(&mut self) {
+        let count = self.lights.len();
+        self.lights.retain(Light::is_sound);
+        if self.lights.len() < count {
+            self.notes.push(format!(
+                "left out {} lights whose numbers make no sense",
+                count - self.lights.len()
+            ));
+        }
+        if self.camera.is_some_and(|camera| !camera.is_sound()) {
+            self.notes.push("left out a camera whose numbers make no sense".to_owned());
+            self.camera = None;
+        }
     }
 
     /// Where the local origin goes: zero for geometry near the origin, else the middle of its box,
@@ -178,6 +208,12 @@ impl Draft {
         let unit = diagonal.log2().floor().exp2();
         (centre / unit).round() * unit
     }
+}
+
+/// The shading normals, or none where one is missing or not finite.
+fn sound_normals(triangle: &DraftTriangle) -> [Vec3; 3] {
+    let sound = |normal: &Vec3| normal.is_finite() && *normal != Vec3::ZERO;
+    if triangle.normals.iter().all(sound) { triangle.normals } else { [Vec3::ZERO; 3] }
 }
 
 /// Whether the three points lie on one line, decided without error: every product and difference of

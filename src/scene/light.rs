@@ -92,6 +92,22 @@ impl Light {
         }
     }
 
+    /// Whether its numbers are finite and its colour is not negative.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        let colour = |colour: &Vec3| colour.is_finite() && colour.cmpge(Vec3::ZERO).all();
+        match self {
+            Self::Point { position, intensity } => position.is_finite() && colour(intensity),
+            Self::Spot { position, axis, intensity, inner, outer } => {
+                let vectors = position.is_finite() && axis.is_finite();
+                vectors && colour(intensity) && inner.is_finite() && outer.is_finite()
+            }
+            Self::Directional { direction, irradiance } => {
+                direction.is_finite() && colour(irradiance)
+            }
+        }
+    }
+
     /// The same light with its place moved by `-origin`.
     #[must_use]
     pub(super) fn relative_to(mut self, origin: DVec3) -> Self {

@@ -8,9 +8,16 @@ pub mod builtin;
 mod camera;
 mod draft;
 mod error;
+mod gltf;
 mod light;
+mod load;
 mod material;
+mod mtl;
+mod obj;
+mod placement;
+mod polygon;
 mod sensible;
+mod toml;
 
 use std::sync::Arc;
 
@@ -20,7 +27,9 @@ pub use camera::Camera;
 pub use draft::{Draft, DraftTriangle, Dropped};
 pub use error::SceneError;
 pub use light::{Illumination, Light};
+pub use load::{draft, load};
 pub use material::Material;
+use material::Surroundings;
 
 use crate::geometry::{Bounds, TriangleId, Triangles};
 

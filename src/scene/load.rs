@@ -1,0 +1,85 @@
+//! From a name or a path to a scene.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use super::{Draft, Scene, SceneError, builtin, gltf, obj, toml};
+
+/// Kinds of files that [`load`] reads, for messages.
+const READABLE: &str = ".obj, .glb, .gltf and .toml";
+
+/// Loads a scene: the name of a built-in one, or a path that ends in `.obj`, `.glb`, `.gltf` or
+/// `.toml` (in any case).
+///
+/// # Errors
+/// What is wrong with the name or the file, in one line.
+pub fn load(name_or_path: &str) -> Result<Scene, SceneError> {
+    draft(name_or_path)?.finish()
+}
+
+/// The scene of that name or path as it is written, before it is moved and rounded.
+///
+/// # Errors
+/// What is wrong with the name or the file, in one line.
+pub fn draft(name_or_path: &str) -> Result<Draft, SceneError> {
+    if let Some(draft) = builtin::draft(name_or_path) {
+        return Ok(draft);
+    }
+    let path = Path::new(name_or_path);
+    match extension(path).as_str() {
+        "toml" => toml::read(path),
+        _ if is_mesh(path) => read_mesh(path),
+        _ => Err(not_a_scene(name_or_path)),
+    }
+}
+
+/// Whether the file has a name that [`read_mesh`] reads.
+pub(super) fn is_mesh(path: &Path) -> bool {
+    matches!(extension(path).as_str(), "obj" | "glb" | "gltf")
+}
+
+/// Reads an OBJ or glTF file.
+pub(super) fn read_mesh(path: &Path) -> Result<Draft, SceneError> {
+    if extension(path) == "obj" { obj::read(path) } else { gltf::read(path) }
+}
+
+/// The bytes of a file that must not be empty.
+pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let bytes =
+        fs::read(path).map_err(|reason| SceneError::Unreadable { path: path.into(), reason })?;
+    if bytes.is_empty() {
+        return Err(malformed(path, "the file is empty"));
+    }
+    Ok(bytes)
+}
+
+/// A [`SceneError::Malformed`].
+pub(super) fn malformed(path: &Path, problem: impl Into<String>) -> SceneError {
+    SceneError::Malformed { path: path.into(), problem: problem.into() }
+}
+
+/// A draft that is named after its file, with nothing in it.
+pub(super) fn empty_draft(path: &Path) -> Draft {
+    Draft { name: path.display().to_string(), ..Draft::default() }
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// Why a name without a readable extension is no scene.
+fn not_a_scene(name: &str) -> SceneError {
+    let path = PathBuf::from(name);
+    if path.is_dir() {
+        let reason = io::Error::other(format!(
+            "this is a directory; name a file of it that ends in {READABLE}"
+        ));
+        return SceneError::Unreadable { path, reason };
+    }
+    if path.exists() {
+        return malformed(&path, format!("unknown kind of file; umbra reads {READABLE}"));
+    }
+    SceneError::Unknown { name: name.to_owned(), known: builtin::NAMES.join(", ") }
+}

@@ -1,0 +1,89 @@
+//! MTL files, read by tobj.
+//!
+//! tobj refuses a whole MTL file for one bad line and panics on a colour of fewer than three numbers,
+//! so it is given only the lines that we use and that are sound.
+
+use std::{fs, path::Path};
+
+use glam::Vec3;
+
+use super::Material;
+
+/// Reads what an `mtllib` line of the OBJ file `obj` names: one file, whose name may hold spaces, or
+/// several. A missing one is noted.
+pub(super) fn read_libraries(obj: &Path, names: &str, notes: &mut Vec<String>) -> Vec<Material> {
+    let folder = obj.parent().unwrap_or(Path::new(""));
+    let open = |name: &str| fs::read(folder.join(name.trim().replace('\\', "/"))).ok();
+    if let Some(bytes) = open(names) {
+        return parse(&String::from_utf8_lossy(&bytes));
+    }
+    let mut materials = Vec::new();
+    for name in names.split_whitespace() {
+        match open(name) {
+            Some(bytes) => materials.extend(parse(&String::from_utf8_lossy(&bytes))),
+            None => {
+                notes.push(format!("material file '{name}' cannot be read: plain grey instead"))
+            }
+        }
+    }
+    materials
+}
+
+fn parse(text: &str) -> Vec<Material> {
+    let sound: String = text.lines().filter_map(sound_line).collect();
+    // Nothing is left in the text that tobj could refuse; if it does, all is plain grey.
+    let (materials, _) = tobj::load_mtl_buf(&mut sound.as_bytes()).unwrap_or_default();
+    materials.iter().map(material).collect()
+}
+
+/// The line as tobj is to see it, if it is one of those we use.
+fn sound_line(line: &str) -> Option<String> {
+    let line = line.trim();
+    let (keyword, rest) = line.split_once(char::is_whitespace)?;
+    let mut numbers = rest
+        .split_whitespace()
+        .map_while(|word| word.parse::<f64>().ok().filter(|x| x.is_finite()));
+    match keyword {
+        "newmtl" => Some(format!("newmtl {}\n", rest.trim())),
+        "Kd" | "Ks" | "Ke" => {
+            let red = numbers.next()?;
+            // One number stands for all three channels.
+            let (green, blue) = (numbers.next().unwrap_or(red), numbers.next().unwrap_or(red));
+            Some(format!("{keyword} {red} {green} {blue}\n"))
+        }
+        "Ns" | "Ni" | "d" | "Tr" => Some(format!("{keyword} {}\n", numbers.next()?)),
+        "illum" => Some(format!("illum {}\n", numbers.next()? as u8)),
+        _ => None,
+    }
+}
+
+/// Illumination models that reflect: 3 mirror, 4 glass, 5 Fresnel, 6 and 7 refraction, 8 and 9 as 3
+/// and 4 without ray tracing.
+fn reflects(model: u8) -> bool {
+    (3..=9).contains(&model)
+}
+
+fn material(mtl: &tobj::Material) -> Material {
+    let plain = Material::default();
+    let colour = |value: Option<[f64; 3]>| value.map(|[r, g, b]| glam::dvec3(r, g, b).as_vec3());
+    let share = |value: Vec3| value.max(Vec3::ZERO).min(Vec3::ONE);
+    let model = mtl.illumination_model.unwrap_or(2);
+    let specular = share(colour(mtl.specular).unwrap_or(Vec3::ZERO));
+    let transparency = mtl.unknown_param.get("Tr").and_then(|value| value.parse::<f64>().ok());
+    let opacity = mtl.dissolve.or(transparency.map(|t| 1.0 - t)).unwrap_or(1.0);
+    let opacity = opacity.clamp(0.0, 1.0) as f32;
+    let refracts = matches!(model, 6 | 7) && opacity < 1.0;
+    Material {
+        name: mtl.name.clone(),
+        diffuse: opacity * share(colour(mtl.diffuse).unwrap_or(plain.diffuse)),
+        reflection: if reflects(model) { specular } else { Vec3::ZERO },
+        transmission: Vec3::splat(1.0 - opacity),
+        refraction_index: match mtl.optical_density {
+            Some(index) if refracts && index >= 1.0 => index as f32,
+            _ => 1.0,
+        },
+        highlight: if model == 2 { specular } else { Vec3::ZERO },
+        shininess: mtl.shininess.map_or(plain.shininess, |exponent| exponent.max(1.0) as f32),
+        emission: colour(mtl.emissive).unwrap_or(Vec3::ZERO).max(Vec3::ZERO),
+    }
+}

@@ -1,0 +1,202 @@
+//! OBJ files.
+//!
+//! Read here rather than by tobj: tobj refuses a whole file for one face with an index out of range,
+//! without saying where, and cuts every polygon into a fan. MTL files go through tobj (`mtl.rs`).
+//!
+//! Two passes over the text: the first takes the vertices, the second the faces, which may name
+//! vertices that come later. Lines, points, curves, groups and texture coordinates are skipped.
+
+use std::{collections::HashMap, path::Path};
+
+use glam::{DVec3, Vec3};
+
+use super::{
+    Draft, DraftTriangle, Material, SceneError,
+    load::{empty_draft, malformed, read_file},
+    mtl,
+    polygon::triangulate,
+};
+
+/// Reads an OBJ file and its MTL files.
+pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
+    let bytes = read_file(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    let mut materials = Materials::default();
+    let mut draft = empty_draft(path);
+    draft.choose_surroundings = true;
+    let vertices = read_vertices(path, &text, &mut materials, &mut draft.notes)?;
+    read_faces(path, &text, &vertices, &mut materials, &mut draft)?;
+    if materials.undefined > 0 {
+        draft.notes.push(format!(
+            "{} materials are used but defined nowhere: plain grey",
+            materials.undefined
+        ));
+    }
+    draft.materials = materials.list;
+    Ok(draft)
+}
+
+#[derive(Default)]
+struct Vertices {
+    positions: Vec<DVec3>,
+    normals: Vec<Vec3>,
+}
+
+#[derive(Default)]
+struct Materials {
+    list: Vec<Material>,
+    by_name: HashMap<String, u32>,
+    undefined: usize,
+}
+
+impl Materials {
+    fn add(&mut self, material: Material) -> u32 {
+        let index = self.list.len() as u32;
+        self.by_name.insert(material.name.clone(), index);
+        self.list.push(material);
+        index
+    }
+
+    /// The material of that name, made plain grey if there is none.
+    fn named(&mut self, name: &str) -> u32 {
+        self.by_name.get(name).copied().unwrap_or_else(|| {
+            self.undefined += 1;
+            self.add(Material { name: name.to_owned(), ..Material::default() })
+        })
+    }
+}
+
+/// Keyword and rest of each line that is not a comment, with its number from 1.
+fn lines(text: &str) -> impl Iterator<Item = (usize, &str, &str)> {
+    text.lines().enumerate().filter_map(|(index, line)| {
+        let line = line.trim();
+        let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        (!keyword.is_empty() && !keyword.starts_with('#')).then_some((
+            index + 1,
+            keyword,
+            rest.trim_start(),
+        ))
+    })
+}
+
+fn read_vertices(
+    path: &Path,
+    text: &str,
+    materials: &mut Materials,
+    notes: &mut Vec<String>,
+) -> Result<Vertices, SceneError> {
+    let mut vertices = Vertices::default();
+    for (number, keyword, rest) in lines(text) {
+        let vector = || {
+            let mut words = rest.split_whitespace().map(str::parse::<f64>);
+            match (words.next(), words.next(), words.next()) {
+                (Some(Ok(x)), Some(Ok(y)), Some(Ok(z))) => Ok(DVec3::new(x, y, z)),
+                _ => Err(malformed(
+                    path,
+                    format!("line {number}: three numbers must follow '{keyword}', not '{rest}'"),
+                )),
+            }
+        };
+        match keyword {
+            "v" => vertices.positions.push(vector()?),
+            "vn" => vertices.normals.push(vector()?.as_vec3()),
+            "mtllib" => {
+                for material in mtl::read_libraries(path, rest, notes) {
+                    materials.add(material);
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(vertices)
+}
+
+fn read_faces(
+    path: &Path,
+    text: &str,
+    vertices: &Vertices,
+    materials: &mut Materials,
+    draft: &mut Draft,
+) -> Result<(), SceneError> {
+    let mut seen = Seen { positions: 0, normals: 0 };
+    let mut material = None;
+    let (mut corners, mut positions) = (Vec::new(), Vec::new());
+    for (number, keyword, rest) in lines(text) {
+        match keyword {
+            "v" => seen.positions += 1,
+            "vn" => seen.normals += 1,
+            "usemtl" => material = Some(materials.named(rest.trim_end())),
+            "f" => {
+                corners.clear();
+                for word in rest.split_whitespace().take_while(|word| !word.starts_with('#')) {
+                    corners.push(
+                        seen.corner(word, vertices).map_err(|problem| {
+                            malformed(path, format!("line {number}: {problem}"))
+                        })?,
+                    );
+                }
+                let material = *material.get_or_insert_with(|| materials.add(Material::default()));
+                positions.clear();
+                positions.extend(corners.iter().map_while(|corner| corner.position));
+                if positions.len() < corners.len() {
+                    draft.dropped.out_of_range += 1;
+                } else if !positions.iter().all(|position| position.is_finite()) {
+                    draft.dropped.not_finite += 1;
+                } else if positions.len() < 3 {
+                    draft.dropped.zero_area += 1;
+                } else {
+                    draft.triangles.extend(triangulate(&positions).into_iter().map(|triangle| {
+                        DraftTriangle {
+                            corners: triangle.map(|i| positions[i]),
+                            normals: triangle.map(|i| corners[i].normal),
+                            material,
+                        }
+                    }));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// How many vertices came before the line at hand: relative indices count back from there.
+struct Seen {
+    positions: usize,
+    normals: usize,
+}
+
+/// A corner of a face; no position if its index is out of range.
+struct Corner {
+    position: Option<DVec3>,
+    normal: Vec3,
+}
+
+impl Seen {
+    /// Reads `position`, `position/texture`, `position//normal` or `position/texture/normal`.
+    fn corner(&self, word: &str, vertices: &Vertices) -> Result<Corner, String> {
+        let mut parts = word.split('/').map(|part| {
+            part.parse::<i64>().map_err(|_| format!("'{word}' is not a corner of a face"))
+        });
+        let position = parts.next().expect("split gives at least one part")?;
+        let normal = match word.split('/').nth(2) {
+            None | Some("") => None,
+            Some(_) => parts.nth(1).transpose()?,
+        };
+        let normal = normal.and_then(|index| at(&vertices.normals, index, self.normals));
+        Ok(Corner {
+            position: at(&vertices.positions, position, self.positions),
+            normal: normal.unwrap_or(Vec3::ZERO),
+        })
+    }
+}
+
+/// What the index names: from 1 upwards counts from the start, from -1 downwards back from `seen`.
+fn at<T: Copy>(list: &[T], index: i64, seen: usize) -> Option<T> {
+    let index = match index {
+        0 => return None,
+        1.. => index - 1,
+        _ => seen as i64 + index,
+    };
+    list.get(usize::try_from(index).ok()?).copied()
+}

@@ -1,0 +1,250 @@
+//! Scene descriptions: a `.toml` file that puts meshes, materials, lights and a camera together.
+//!
+//! ```toml
+//! up = [0, 1, 0]                   # for the camera; this is the default
+//! ambient = [0.1, 0.1, 0.1]        # chosen for you if left out, as are background,
+//! background = [0.3, 0.4, 0.5]     # exposure, camera and lights
+//! exposure = 1.0
+//!
+//! [camera]
+//! position = [0, 1, 4]
+//! target = [0, 1, 0]
+//! field_of_view = 40               # vertical, degrees
+//!
+//! [materials.glass]                # each line has a default: plain grey
+//! diffuse = [0, 0, 0]
+//! reflection = [0.04, 0.04, 0.04]  # mirror
+//! transmission = [0.9, 0.9, 0.9]   # anything above zero attenuates shadow rays
+//! refraction_index = 1.5           # 1: a thin sheet
+//! highlight = [1, 1, 1]            # Phong
+//! shininess = 100
+//! emission = [0, 0, 0]
+//!
+//! [[mesh]]                         # one of file, builtin, quads, triangles
+//! file = "sphere.obj"              # .obj, .glb, .gltf; relative to this file
+//! material = "glass"               # in place of those of the file
+//! scale = [1, 1, 1]                # first scaled, then
+//! rotate = [0, 90, 0]              # turned about x, y, z in this order, degrees, then
+//! translate = [0, 1, 0]            # moved
+//!
+//! [[mesh]]
+//! quads = [[[-5, 0, 5], [5, 0, 5], [5, 0, -5], [-5, 0, -5]]]
+//!
+//! [[light]]
+//! kind = "point"
+//! position = [2, 4, 2]
+//! intensity = [20, 20, 20]
+//!
+//! [[light]]
+//! kind = "spot"
+//! position = [0, 5, 0]
+//! target = [0, 0, 0]
+//! intensity = [30, 30, 30]
+//! inner = 20                       # half angles in degrees: fully lit within
+//! outer = 30                       # dark beyond
+//!
+//! [[light]]
+//! kind = "directional"
+//! from = [1, 2, 1]                 # where the light comes from
+//! irradiance = [1, 1, 1]
+//! ```
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use glam::{DAffine3, DQuat, DVec3, EulerRot, Vec3};
+use serde::Deserialize;
+
+use super::{
+    Camera, Draft, DraftTriangle, Light, Material, SceneError, builtin,
+    load::{empty_draft, is_mesh, malformed, read_file, read_mesh},
+    placement::Placement,
+};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Description {
+    up: Option<[f64; 3]>,
+    ambient: Option<[f32; 3]>,
+    background: Option<[f32; 3]>,
+    exposure: Option<f32>,
+    camera: Option<CameraEntry>,
+    #[serde(default)]
+    materials: BTreeMap<String, Material>,
+    #[serde(default)]
+    mesh: Vec<MeshEntry>,
+    #[serde(default)]
+    light: Vec<LightEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CameraEntry {
+    position: [f64; 3],
+    target: [f64; 3],
+    #[serde(default = "forty_degrees")]
+    field_of_view: f64,
+}
+
+fn forty_degrees() -> f64 {
+    40.0
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MeshEntry {
+    file: Option<PathBuf>,
+    builtin: Option<String>,
+    quads: Option<Vec<[[f64; 3]; 4]>>,
+    triangles: Option<Vec<[[f64; 3]; 3]>>,
+    material: Option<String>,
+    #[serde(default = "unscaled")]
+    scale: [f64; 3],
+    #[serde(default)]
+    rotate: [f64; 3],
+    #[serde(default)]
+    translate: [f64; 3],
+}
+
+fn unscaled() -> [f64; 3] {
+    [1.0; 3]
+}
+
+#[derive(Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+enum LightEntry {
+    Point {
+        position: [f64; 3],
+        intensity: [f32; 3],
+    },
+    Spot {
+        position: [f64; 3],
+        target: [f64; 3],
+        intensity: [f32; 3],
+        #[serde(default)]
+        inner: f64,
+        outer: f64,
+    },
+    Directional {
+        from: [f64; 3],
+        irradiance: [f32; 3],
+    },
+}
+
+/// Reads a scene description and the meshes it names.
+pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
+    let bytes = read_file(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    let description: Description = ::toml::from_str(&text).map_err(|error| {
+        let line = error.span().map_or(0, |span| text[..span.start].lines().count().max(1));
+        malformed(path, format!("line {line}: {}", error.message().replace('\n', " ")))
+    })?;
+    let up = DVec3::from(description.up.unwrap_or([0.0, 1.0, 0.0]));
+    let mut draft = empty_draft(path);
+    draft.up = Some(up);
+    draft.camera = description.camera.map(|camera| {
+        let field_of_view = camera.field_of_view.to_radians();
+        Camera::look_at(camera.position.into(), camera.target.into(), up, field_of_view)
+    });
+    draft.lights = description.light.iter().map(light).collect();
+    draft.choose_surroundings = description.ambient.is_none() && description.background.is_none();
+    draft.ambient = description.ambient.unwrap_or_default().into();
+    draft.background = description.background.unwrap_or_default().into();
+    draft.exposure = description.exposure;
+    for (name, material) in description.materials {
+        draft.materials.push(Material { name, ..material });
+    }
+    for (index, entry) in description.mesh.iter().enumerate() {
+        add_mesh(path, &mut draft, index + 1, entry)?;
+    }
+    Ok(draft)
+}
+
+fn light(entry: &LightEntry) -> Light {
+    match *entry {
+        LightEntry::Point { position, intensity } => {
+            Light::Point { position: position.into(), intensity: intensity.into() }
+        }
+        LightEntry::Spot { position, target, intensity, inner, outer } => Light::Spot {
+            position: position.into(),
+            axis: (DVec3::from(target) - DVec3::from(position)).normalize_or(DVec3::NEG_Y),
+            intensity: intensity.into(),
+            inner: inner.to_radians(),
+            outer: outer.to_radians(),
+        },
+        LightEntry::Directional { from, irradiance } => Light::Directional {
+            direction: DVec3::from(from).normalize_or(DVec3::Y),
+            irradiance: irradiance.into(),
+        },
+    }
+}
+
+fn add_mesh(
+    path: &Path,
+    draft: &mut Draft,
+    number: usize,
+    entry: &MeshEntry,
+) -> Result<(), SceneError> {
+    let problem = |text: String| malformed(path, format!("mesh {number}: {text}"));
+    let own = match &entry.material {
+        None => None,
+        Some(name) => {
+            let place = draft.materials.iter().position(|material| material.name == *name);
+            Some(place.ok_or_else(|| problem(format!("there is no [materials.{name}]")))? as u32)
+        }
+    };
+    let mesh = match (&entry.file, &entry.builtin, &entry.quads, &entry.triangles) {
+        (Some(file), None, None, None) => {
+            let file = path.parent().unwrap_or(Path::new("")).join(file);
+            if !is_mesh(&file) {
+                let text = "is no mesh; name an .obj, .glb or .gltf file";
+                return Err(problem(format!("'{}' {text}", file.display())));
+            }
+            read_mesh(&file)?
+        }
+        (None, Some(name), None, None) => builtin::draft(name).ok_or_else(|| {
+            SceneError::Unknown { name: name.clone(), known: builtin::NAMES.join(", ") }
+        })?,
+        (None, None, Some(quads), None) => {
+            inline(quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]))
+        }
+        (None, None, None, Some(triangles)) => inline(triangles.iter().copied()),
+        _ => return Err(problem("give one of file, builtin, quads and triangles".to_owned())),
+    };
+    if !mesh.lights.is_empty() || mesh.camera.is_some() {
+        draft.notes.push(format!("{}: its lights and camera are left out", mesh.name));
+    }
+    let first = draft.materials.len() as u32;
+    let [x, y, z] = entry.rotate.map(f64::to_radians);
+    let placement = Placement::new(DAffine3::from_scale_rotation_translation(
+        entry.scale.into(),
+        DQuat::from_euler(EulerRot::XYZEx, x, y, z),
+        entry.translate.into(),
+    ));
+    draft.triangles.extend(mesh.triangles.iter().map(|triangle| DraftTriangle {
+        material: own.unwrap_or(first + triangle.material),
+        ..placement.place(triangle)
+    }));
+    if own.is_none() {
+        draft.materials.extend(mesh.materials);
+    }
+    draft.notes.extend(mesh.notes);
+    draft.dropped.out_of_range += mesh.dropped.out_of_range;
+    draft.dropped.not_finite += mesh.dropped.not_finite;
+    draft.dropped.zero_area += mesh.dropped.zero_area;
+    Ok(())
+}
+
+/// A mesh that is written in the description itself.
+fn inline(triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Draft {
+    let triangles = triangles
+        .map(|corners| DraftTriangle {
+            corners: corners.map(DVec3::from),
+            normals: [Vec3::ZERO; 3],
+            material: 0,
+        })
+        .collect();
+    Draft { triangles, materials: vec![Material::default()], ..Draft::default() }
+}
