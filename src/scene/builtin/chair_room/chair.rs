@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use crate::geometry::surface::{Sheet, cosine_and_sine};
-use crate::scene::builtin::model::{MaterialId, Model, aimed};
+use crate::scene::builtin::model::{MaterialId, Model};
 
 /// One cross-section of a moulded body, which faces +Z: its middle lies in the plane X = 0.
 struct Station {
@@ -123,11 +123,4 @@ const CANTILEVER: [Station; 19] = [
 /// A chair of one piece that swings forward from its foot.
 pub(super) fn cantilever_chair(model: &mut Model, shell: MaterialId, place: DAffine3) {
     model.surface(&body(&CANTILEVER, 0.009), (48, 72), shell, place);
-}
-
-/// A chromed bar between two points.
-pub(super) fn bar(model: &mut Model, from: DVec3, to: DVec3, radius: f64, chrome: MaterialId) {
-    let length = (to - from).length();
-    let run = [(radius, 0.0), (radius, length)];
-    model.lathe(&[(&run, 1)], 9, chrome, aimed(to - from, from));
 }

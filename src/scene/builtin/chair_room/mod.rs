@@ -21,16 +21,20 @@ pub(super) fn describe(model: &mut Model) {
     table::things(model, &materials, table_place);
     // Each looks at the table: its own front is +Z.
     for (turns, distance, shell) in [
-        (0.09, 0.92, materials.shells[0]),
-        (0.36, 0.86, materials.shells[1]),
-        (0.60, 0.84, materials.shells[2]),
-        (0.86, 0.90, materials.shells[0]),
+        (0.07, 0.80, materials.shells[0]),
+        (0.33, 0.74, materials.shells[1]),
+        (0.61, 0.76, materials.shells[2]),
+        (0.84, 0.86, materials.shells[1]),
     ] {
         let away = turned(turns, TABLE).transform_vector3(DVec3::Z * distance);
         let place = turned(turns + 0.5, TABLE + away);
         chair::shell_chair(model, shell, materials.chrome, materials.rubber, place);
     }
-    chair::cantilever_chair(model, materials.shells[3], turned(0.12, DVec3::new(-1.75, 0.0, -1.9)));
+    chair::cantilever_chair(
+        model,
+        materials.shells[3],
+        turned(0.10, DVec3::new(-1.35, 0.0, -2.05)),
+    );
     light(model, &materials);
     look(model);
 }
@@ -43,18 +47,18 @@ fn light(model: &mut Model, materials: &Materials) {
         let place = turned(0.0, DVec3::new(x, room::HEIGHT - 0.045, z));
         model.lathe(&[(&disc, 6)], 27, materials.lamp, place);
         let position = DVec3::new(x, room::HEIGHT - 0.12, z);
-        model.draft.lights.push(Light::Point { position, intensity: Vec3::new(3.4, 3.05, 2.6) });
+        model.draft.lights.push(Light::Point { position, intensity: Vec3::new(7.4, 6.7, 5.8) });
     }
 }
 
 fn look(model: &mut Model) {
     model.draft.camera = Some(Camera::look_at(
-        DVec3::new(1.95, 1.50, 2.75),
-        DVec3::new(-0.22, 0.66, -0.55),
+        DVec3::new(1.55, 1.38, 2.55),
+        DVec3::new(-0.16, 0.66, -0.55),
         DVec3::Y,
-        0.72,
+        0.66,
     ));
-    model.draft.ambient = Vec3::new(0.17, 0.16, 0.15);
+    model.draft.ambient = Vec3::new(0.13, 0.125, 0.12);
     model.draft.exposure = Some(1.0);
 }
 
@@ -85,16 +89,16 @@ impl Materials {
         };
         let glossy = |r: f32, g: f32, b: f32, reflection: f32| Material {
             reflection: Vec3::splat(reflection),
-            highlight: Vec3::splat(0.5),
+            highlight: Vec3::splat(0.16),
             shininess: 90.0,
             ..matt(r, g, b)
         };
         let glass = |r: f32, g: f32, b: f32| Material {
             transmission: Vec3::new(r, g, b),
             refraction_index: 1.5,
-            highlight: Vec3::splat(0.6),
+            highlight: Vec3::splat(0.2),
             shininess: 300.0,
-            ..glossy(0.0, 0.0, 0.0, 0.04)
+            ..glossy(0.0, 0.0, 0.0, 0.0)
         };
         let shining = |r: f32, g: f32, b: f32| Material {
             emission: Vec3::new(r, g, b),
@@ -105,7 +109,7 @@ impl Materials {
                 model.material("light tile", glossy(0.62, 0.56, 0.47, 0.10)),
                 model.material("dark tile", glossy(0.23, 0.20, 0.18, 0.10)),
             ],
-            wall: model.material("wall", matt(0.70, 0.56, 0.42)),
+            wall: model.material("wall", matt(0.60, 0.52, 0.42)),
             panelling: model.material("panelling", matt(0.78, 0.74, 0.66)),
             ceiling: model.material("ceiling", matt(0.85, 0.83, 0.79)),
             sky: model.material("sky", shining(0.62, 0.78, 0.98)),
@@ -122,7 +126,7 @@ impl Materials {
                 "chrome",
                 Material {
                     reflection: Vec3::new(0.78, 0.79, 0.80),
-                    highlight: Vec3::splat(0.9),
+                    highlight: Vec3::splat(0.3),
                     shininess: 200.0,
                     ..matt(0.03, 0.03, 0.03)
                 },

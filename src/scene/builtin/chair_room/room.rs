@@ -18,7 +18,7 @@ const WINDOW: [(f64, f64); 2] = [(-1.9, 0.1), (0.95, 2.35)];
 /// How deep the window lies in the wall.
 const NICHE: f64 = 0.22;
 /// The mirror on the back wall: from and to along X, then along Y.
-const MIRROR: [(f64, f64); 2] = [(-0.85, 1.55), (1.0, 2.35)];
+const MIRROR: [(f64, f64); 2] = [(-0.45, 1.45), (0.07, 2.20)];
 
 /// Everything that does not move.
 pub(super) fn describe(model: &mut Model, materials: &Materials) {
@@ -107,7 +107,7 @@ fn panelling(model: &mut Model, paint: MaterialId) {
 
 fn mirror(model: &mut Model, materials: &Materials) {
     let [(left, right), (low, high)] = MIRROR;
-    let front = -HALF + 0.02;
+    let front = -HALF + 0.05;
     let corner = DVec3::new(left, low, front);
     model.panel(
         corner,
@@ -116,7 +116,7 @@ fn mirror(model: &mut Model, materials: &Materials) {
         (1, 1),
         materials.mirror,
     );
-    let wide = 0.07;
+    let wide = 0.065;
     let mut bar = |x: (f64, f64), y: (f64, f64)| {
         let (from, to) = (DVec3::new(x.0, y.0, -HALF), DVec3::new(x.1, y.1, front + 0.03));
         model.cuboid(from, to, materials.frame, DAffine3::IDENTITY);

@@ -2,12 +2,12 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::{HEIGHT, Materials, RADIUS};
+use super::{HEIGHT, Materials, RADIUS, STRAINER};
 use crate::geometry::surface::cosine_and_sine;
-use crate::scene::builtin::model::Model;
+use crate::scene::builtin::model::{Model, aimed, turned};
 
 /// Cells around the drum.
-const AROUND: usize = 180;
+const AROUND: usize = 120;
 /// Snare wires, and the distance between them.
 const WIRES: u32 = 20;
 const WIRE_PITCH: f64 = 0.0026;
@@ -19,11 +19,11 @@ const COIL_REACH: f64 = 0.128;
 
 pub(super) fn describe(model: &mut Model, materials: &Materials, place: DAffine3) {
     let shell = [
-        (0.000, 0.026, 4, materials.lacquer),
-        (0.026, 0.031, 1, materials.inlay),
-        (0.031, HEIGHT - 0.031, 12, materials.lacquer),
-        (HEIGHT - 0.031, HEIGHT - 0.026, 1, materials.inlay),
-        (HEIGHT - 0.026, HEIGHT, 4, materials.lacquer),
+        (0.000, 0.034, 4, materials.lacquer),
+        (0.034, 0.039, 1, materials.inlay),
+        (0.039, HEIGHT - 0.039, 8, materials.lacquer),
+        (HEIGHT - 0.039, HEIGHT - 0.034, 1, materials.inlay),
+        (HEIGHT - 0.034, HEIGHT, 4, materials.lacquer),
     ];
     for (from, to, along, material) in shell {
         model.lathe(&[(&[(RADIUS, from), (RADIUS, to)], along)], AROUND, material, place);
@@ -31,7 +31,8 @@ pub(super) fn describe(model: &mut Model, materials: &Materials, place: DAffine3
     heads(model, materials, place);
     hoop(model, materials, place);
     hoop(model, materials, place * upside_down());
-    wires(model, materials, place);
+    wires(model, materials, place * turned(STRAINER, DVec3::ZERO));
+    badge(model, materials, place);
 }
 
 /// Upper edge and lower edge of the drum change places, by half a turn about X.
@@ -84,7 +85,7 @@ fn hoop(model: &mut Model, materials: &Materials, place: DAffine3) {
         (0.0055, -0.0170),
     ]
     .map(at);
-    model.lathe(&[(&bottom, 2), (&outside, 22)], AROUND, materials.chrome, place);
+    model.lathe(&[(&bottom, 2), (&outside, 20)], AROUND, materials.chrome, place);
 }
 
 /// Twenty coiled wires under the lower head, between two plates.
@@ -110,4 +111,14 @@ fn wires(model: &mut Model, materials: &Materials, place: DAffine3) {
         let high = DVec3::new(x + 0.006, level + 0.0012, half);
         model.cuboid(low, high, materials.chrome, place);
     }
+}
+
+/// A brass badge on the front of the shell.
+fn badge(model: &mut Model, materials: &Materials, place: DAffine3) {
+    const TURNS: f64 = 0.70;
+    let plate = [(0.0170, 0.0), (0.0170, 0.0012), (0.0160, 0.0018), (0.0148, 0.0014)];
+    let face = [(0.0148, 0.0014), (0.0, 0.0010)];
+    let at = DVec3::new(RADIUS - 0.0008, 0.5 * HEIGHT, 0.0);
+    let front = place * turned(TURNS, DVec3::ZERO) * aimed(DVec3::X, at);
+    model.lathe(&[(&plate, 4), (&face, 2)], 36, materials.brass, front);
 }

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::body::upside_down;
-use super::{HEIGHT, Materials, RADIUS};
+use super::{HEIGHT, Materials, RADIUS, STRAINER};
 use crate::scene::builtin::model::{Model, aimed, turned};
 
 /// Lugs around the shell.
@@ -44,15 +44,15 @@ fn lug_body(model: &mut Model, materials: &Materials, place: DAffine3) {
         (0.0, 0.110),
     ];
     let post = place * DAffine3::from_translation(DVec3::X * ROD);
-    model.lathe(&[(&profile, 30)], 14, materials.chrome, post);
+    model.lathe(&[(&profile, 24)], 14, materials.chrome, post);
     for height in [0.0455, 0.0945] {
         let foot = [(0.0085, 0.0), (0.0080, 0.002), (0.0045, 0.004), (0.0040, 0.0145)];
         let at = place * aimed(DVec3::X, DVec3::new(RADIUS - 0.0005, height, 0.0));
-        model.lathe(&[(&foot, 5)], 12, materials.chrome, at);
+        model.lathe(&[(&foot, 4)], 10, materials.chrome, at);
     }
 }
 
-/// The upper rod: its shaft, the claw that holds the hoop, the washer and the square head.
+/// The upper rod: its shaft, the claw that holds the hoop, the washer and the head.
 fn rod(model: &mut Model, materials: &Materials, place: DAffine3) {
     let axis = place * DAffine3::from_translation(DVec3::X * ROD);
     let shaft = [(0.0026, 0.108), (0.0026, HEIGHT - 0.013)];
@@ -65,15 +65,14 @@ fn rod(model: &mut Model, materials: &Materials, place: DAffine3) {
         (0.0066, HEIGHT - 0.0095),
         (0.0052, HEIGHT - 0.0090),
     ];
-    model.lathe(&[(&claw, 7)], 14, materials.chrome, axis);
+    model.lathe(&[(&claw, 6)], 12, materials.chrome, axis);
     let washer = [
         (0.0052, HEIGHT - 0.0090),
         (0.0054, HEIGHT - 0.0080),
         (0.0040, HEIGHT - 0.0074),
         (0.0036, HEIGHT - 0.0060),
     ];
-    model.lathe(&[(&washer, 4)], 14, materials.chrome, axis);
-    // Four cells around make a square key.
+    model.lathe(&[(&washer, 3)], 12, materials.chrome, axis);
     let head = [(0.0036, HEIGHT - 0.0060), (0.0034, HEIGHT + 0.0015)];
     let lid = [(0.0034, HEIGHT + 0.0015), (0.0, HEIGHT + 0.0020)];
     model.lathe(&[(&head, 1), (&lid, 1)], 8, materials.chrome, axis);
@@ -85,7 +84,7 @@ fn strainer(model: &mut Model, materials: &Materials, place: DAffine3) {
         let (low, high) = (DVec3::new(x.0, y.0, -half), DVec3::new(x.1, y.1, half));
         model.cuboid(low, high, materials.chrome, place);
     };
-    let front = place * turned(0.0, DVec3::ZERO);
+    let front = place * turned(STRAINER, DVec3::ZERO);
     block(model, (RADIUS - 0.002, RADIUS + 0.006), (0.020, 0.105), 0.017, front);
     block(model, (RADIUS + 0.006, RADIUS + 0.020), (0.030, 0.085), 0.012, front);
     block(model, (RADIUS + 0.008, RADIUS + 0.016), (-0.010, 0.030), 0.010, front);
@@ -102,12 +101,12 @@ fn strainer(model: &mut Model, materials: &Materials, place: DAffine3) {
     model.tube(&lever, 0.0045, DVec3::Z, (12, 18), materials.chrome, front);
     let tip = front.transform_point3(lever[3]);
     model.ball(tip, 0.0062, (16, 10), materials.rubber);
-    let back = place * turned(0.5, DVec3::ZERO);
+    let back = place * turned(STRAINER + 0.5, DVec3::ZERO);
     block(model, (RADIUS - 0.002, RADIUS + 0.008), (0.015, 0.060), 0.016, back);
     block(model, (RADIUS + 0.008, RADIUS + 0.013), (-0.010, 0.045), 0.011, back);
 }
 
-/// Two sticks crossed on the head, their tips on it and their butts over the hoop.
+/// Two sticks crossed on the head.
 fn sticks(model: &mut Model, materials: &Materials, place: DAffine3) {
     let profile = [
         (0.0, 0.0),
@@ -124,14 +123,15 @@ fn sticks(model: &mut Model, materials: &Materials, place: DAffine3) {
         (0.0040, 0.4035),
         (0.0, 0.4050),
     ];
+    // The first lies on the head and the hoop; the second on the head and, beyond its middle, on
+    // the first.
     let head = HEIGHT + 0.003;
-    let over = HEIGHT + 0.0150 + 0.0075;
     let laid = [
-        (DVec3::new(-0.085, head + 0.0050, -0.070), DVec3::new(0.140, over, 0.165)),
-        (DVec3::new(0.092, head + 0.0070, -0.062), DVec3::new(-0.090, over + 0.0125, 0.190)),
+        (DVec3::new(-0.078, head + 0.0050, -0.118), DVec3::new(0.022, 0.0143, 0.302)),
+        (DVec3::new(0.140, head + 0.0055, -0.029), DVec3::new(-0.250, 0.0345, 0.206)),
     ];
-    for (tip, butt) in laid {
-        let at = place * aimed(butt - tip, tip);
+    for (tip, along) in laid {
+        let at = place * aimed(along, tip);
         model.lathe(&[(&profile, 42)], 20, materials.wood, at);
     }
 }

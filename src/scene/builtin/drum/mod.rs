@@ -17,6 +17,9 @@ const HEIGHT: f64 = 0.140;
 /// Height of the shell's lower edge over the floor of the rostrum.
 const LIFT: f64 = 0.30;
 
+/// Where the strainer is, as a fraction of a turn: to the right, seen from the camera.
+const STRAINER: f64 = 0.80;
+
 /// Puts the scene together.
 pub(super) fn describe(model: &mut Model) {
     let materials = Materials::add(model);
@@ -28,8 +31,8 @@ pub(super) fn describe(model: &mut Model) {
     studio(model, &materials);
     lights(model);
     model.draft.camera = Some(Camera::look_at(
-        DVec3::new(-0.42, 0.83, 1.02),
-        DVec3::new(0.0, 0.285, 0.0),
+        DVec3::new(-0.44, 0.80, 1.10),
+        DVec3::new(0.005, 0.262, 0.0),
         DVec3::Y,
         0.50,
     ));
@@ -63,9 +66,9 @@ fn studio(model: &mut Model, materials: &Materials) {
 
 fn lights(model: &mut Model) {
     let lamps = [
-        (DVec3::new(-1.1, 1.7, 1.2), Vec3::new(6.0, 5.6, 5.0)),
+        (DVec3::new(-1.1, 1.7, 1.2), Vec3::new(4.6, 4.3, 3.8)),
         (DVec3::new(1.4, 1.2, 1.3), Vec3::new(2.6, 2.7, 3.0)),
-        (DVec3::new(0.2, 2.1, 0.1), Vec3::new(3.6, 3.5, 3.3)),
+        (DVec3::new(0.2, 2.1, 0.1), Vec3::new(2.4, 2.3, 2.2)),
         (DVec3::new(-1.3, 1.1, -0.9), Vec3::new(2.4, 2.6, 3.2)),
         (DVec3::new(1.2, 1.3, -1.0), Vec3::new(3.4, 2.9, 2.3)),
         (DVec3::new(-0.2, 0.6, 2.0), Vec3::new(2.0, 2.0, 2.0)),
@@ -82,6 +85,7 @@ struct Materials {
     coated: MaterialId,
     dot: MaterialId,
     film: MaterialId,
+    brass: MaterialId,
     chrome: MaterialId,
     steel: MaterialId,
     wood: MaterialId,
@@ -113,11 +117,18 @@ impl Materials {
             ..matt(r, g, b)
         };
         Self {
-            lacquer: model.material("lacquer", glossy(0.42, 0.035, 0.03, 0.06)),
+            lacquer: model.material("lacquer", glossy(0.38, 0.022, 0.02, 0.07)),
             inlay: model.material("inlay", glossy(0.80, 0.72, 0.52, 0.05)),
             coated: model.material("coated head", satin(0.84, 0.83, 0.79)),
             dot: model.material("centre dot", satin(0.74, 0.73, 0.70)),
             film: model.material("snare side head", satin(0.70, 0.71, 0.70)),
+            brass: model.material(
+                "brass",
+                Material {
+                    reflection: Vec3::new(0.55, 0.42, 0.18),
+                    ..glossy(0.30, 0.21, 0.07, 0.0)
+                },
+            ),
             chrome: model.material("chrome", metal(0.72)),
             steel: model.material(
                 "steel wire",
@@ -126,7 +137,7 @@ impl Materials {
             wood: model.material("hickory", satin(0.72, 0.50, 0.28)),
             rubber: model.material("rubber", satin(0.04, 0.04, 0.04)),
             rostrum: model.material("rostrum", glossy(0.05, 0.05, 0.06, 0.12)),
-            backdrop: model.material("backdrop", matt(0.36, 0.42, 0.47)),
+            backdrop: model.material("backdrop", matt(0.30, 0.37, 0.42)),
         }
     }
 }

@@ -11,8 +11,8 @@ const HUB: f64 = -0.075;
 pub(super) fn describe(model: &mut Model, materials: &Materials, drum: DAffine3) {
     for third in 0..3 {
         let turns = f64::from(third) / 3.0;
-        arm(model, materials, drum * turned(turns + 0.08, DVec3::ZERO));
-        leg(model, materials, turned(turns + 0.25, DVec3::ZERO));
+        arm(model, materials, drum * turned(turns + 0.19, DVec3::ZERO));
+        leg(model, materials, turned(turns + 0.19, DVec3::ZERO));
     }
     let hub = drum.transform_point3(DVec3::Y * (HUB - 0.004));
     model.ball(hub, 0.024, (28, 18), materials.chrome);
@@ -60,15 +60,15 @@ fn arm(model: &mut Model, materials: &Materials, place: DAffine3) {
     ];
     model.tube(&points, 0.0060, DVec3::Z, (12, 24), materials.chrome, place);
     let grip = [
-        (0.0, -0.034),
-        (0.0080, -0.034),
-        (0.0098, -0.031),
-        (0.0098, -0.010),
-        (0.0088, -0.004),
-        (0.0102, 0.004),
-        (0.0102, 0.026),
-        (0.0080, 0.031),
-        (0.0, 0.032),
+        (0.0, -0.022),
+        (0.0070, -0.022),
+        (0.0082, -0.019),
+        (0.0082, -0.008),
+        (0.0074, -0.003),
+        (0.0084, 0.002),
+        (0.0084, 0.018),
+        (0.0066, 0.021),
+        (0.0, 0.022),
     ];
     let at = place * DAffine3::from_translation(DVec3::X * reach);
     model.lathe(&[(&grip, 20)], 16, materials.rubber, at);
