@@ -9,6 +9,8 @@ mod circle;
 mod revolution;
 mod sweep;
 mod tessellate;
+#[cfg(test)]
+mod tests;
 
 pub use bezier::{Cubic, Path, Point, Sheet};
 pub use circle::cosine_and_sine;

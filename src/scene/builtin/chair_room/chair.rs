@@ -122,5 +122,5 @@ const CANTILEVER: [Station; 19] = [
 
 /// A chair of one piece that swings forward from its foot.
 pub(super) fn cantilever_chair(model: &mut Model, shell: MaterialId, place: DAffine3) {
-    model.surface(&body(&CANTILEVER, 0.009), (48, 72), shell, place);
+    model.surface(&body(&CANTILEVER, 0.009), (44, 64), shell, place);
 }

@@ -19,21 +19,21 @@ pub(super) fn describe(model: &mut Model) {
     let table_place = turned(0.0, TABLE);
     table::table(model, &materials, table_place);
     table::things(model, &materials, table_place);
-    // Each looks at the table: its own front is +Z.
-    for (turns, distance, shell) in [
-        (0.07, 0.80, materials.shells[0]),
-        (0.33, 0.74, materials.shells[1]),
-        (0.61, 0.76, materials.shells[2]),
-        (0.84, 0.86, materials.shells[1]),
+    // Each looks at the table, a little askew: its own front is +Z.
+    for (turns, distance, askew, shell) in [
+        (0.055, 0.84, 0.035, materials.shells[0]),
+        (0.33, 0.74, -0.02, materials.shells[1]),
+        (0.61, 0.76, 0.015, materials.shells[2]),
+        (0.84, 0.88, 0.03, materials.shells[1]),
     ] {
         let away = turned(turns, TABLE).transform_vector3(DVec3::Z * distance);
-        let place = turned(turns + 0.5, TABLE + away);
+        let place = turned(turns + 0.5 + askew, TABLE + away);
         chair::shell_chair(model, shell, materials.chrome, materials.rubber, place);
     }
     chair::cantilever_chair(
         model,
         materials.shells[3],
-        turned(0.10, DVec3::new(-1.35, 0.0, -2.05)),
+        turned(0.12, DVec3::new(-1.95, 0.0, -1.75)),
     );
     light(model, &materials);
     look(model);
@@ -45,7 +45,7 @@ fn light(model: &mut Model, materials: &Materials) {
     for (x, z) in lamps {
         let disc = [(0.0, 0.0), (0.13, 0.0), (0.15, 0.02), (0.15, 0.05)];
         let place = turned(0.0, DVec3::new(x, room::HEIGHT - 0.045, z));
-        model.lathe(&[(&disc, 6)], 27, materials.lamp, place);
+        model.lathe(&[(&disc, 6)], 25, materials.lamp, place);
         let position = DVec3::new(x, room::HEIGHT - 0.12, z);
         model.draft.lights.push(Light::Point { position, intensity: Vec3::new(7.4, 6.7, 5.8) });
     }

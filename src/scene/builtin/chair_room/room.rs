@@ -25,9 +25,9 @@ pub(super) fn describe(model: &mut Model, materials: &Materials) {
     floor(model, materials);
     let (x, y, z) = (DVec3::X * 2.0 * HALF, DVec3::Y * HEIGHT, DVec3::Z * 2.0 * HALF);
     let corner = DVec3::new(-HALF, 0.0, -HALF);
-    model.panel(corner + y, x, z, (2, 2), materials.ceiling);
-    model.panel(corner, x, y, (2, 2), materials.wall);
-    model.panel(corner + x, z, y, (2, 2), materials.wall);
+    model.panel(corner + y, x, z, (1, 1), materials.ceiling);
+    model.panel(corner, x, y, (1, 1), materials.wall);
+    model.panel(corner + x, z, y, (1, 1), materials.wall);
     model.panel(corner + x + z, -x, y, (2, 2), materials.wall);
     window_wall(model, materials);
     panelling(model, materials.panelling);

@@ -25,8 +25,7 @@ pub(super) fn table(model: &mut Model, materials: &Materials, place: DAffine3) {
     ];
     let bottom = [(0.0, low), (inner, low)];
     let top = [(inner, high), (0.0, high)];
-    model.lathe(&[(&bottom, 2), (&edge, 6), (&top, 2)], 96, materials.glass, place);
-    let foot = [(0.0, 0.0), (0.27, 0.0)];
+    model.lathe(&[(&bottom, 2), (&edge, 6), (&top, 2)], 88, materials.glass, place);
     let trumpet = [
         (0.27, 0.0),
         (0.268, 0.010),
@@ -43,7 +42,8 @@ pub(super) fn table(model: &mut Model, materials: &Materials, place: DAffine3) {
     ];
     let plate = [(0.165, 0.712), (0.165, low - 0.0005)];
     let lid = [(0.165, low - 0.0005), (0.0, low - 0.0005)];
-    model.lathe(&[(&foot, 1), (&trumpet, 40), (&plate, 1), (&lid, 1)], 60, materials.chrome, place);
+    // Open where it stands on the floor.
+    model.lathe(&[(&trumpet, 36), (&plate, 1), (&lid, 1)], 57, materials.chrome, place);
 }
 
 /// A vase, a ball of glass, and a bowl with fruit.
@@ -65,7 +65,7 @@ pub(super) fn things(model: &mut Model, materials: &Materials, place: DAffine3) 
         (0.018, 0.230),
         (0.0, 0.200),
     ];
-    model.lathe(&[(&outside, 52)], 36, materials.porcelain, on_top(-0.10, -0.16));
+    model.lathe(&[(&outside, 44)], 32, materials.porcelain, on_top(-0.10, -0.16));
     let ball = place.transform_point3(DVec3::new(0.27, HEIGHT + 0.0751, 0.12));
     model.ball(ball, 0.075, (36, 24), materials.crystal);
     let bowl = [
@@ -81,7 +81,7 @@ pub(super) fn things(model: &mut Model, materials: &Materials, place: DAffine3) 
         (0.0, 0.014),
     ];
     let at = on_top(-0.22, 0.20);
-    model.lathe(&[(&bowl, 26)], 42, materials.chrome, at);
+    model.lathe(&[(&bowl, 24)], 38, materials.chrome, at);
     let fruit = [
         (-0.048, 0.050, 0.015),
         (0.047, 0.050, 0.025),
@@ -90,6 +90,6 @@ pub(super) fn things(model: &mut Model, materials: &Materials, place: DAffine3) 
     ];
     for (x, y, z) in fruit {
         let centre = at.transform_point3(DVec3::new(x, y + 0.012, z));
-        model.ball(centre, 0.040, (18, 12), materials.fruit);
+        model.ball(centre, 0.040, (16, 10), materials.fruit);
     }
 }

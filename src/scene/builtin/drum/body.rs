@@ -7,13 +7,13 @@ use crate::geometry::surface::cosine_and_sine;
 use crate::scene::builtin::model::{Model, aimed, turned};
 
 /// Cells around the drum.
-const AROUND: usize = 120;
+const AROUND: usize = 114;
 /// Snare wires, and the distance between them.
 const WIRES: u32 = 20;
 const WIRE_PITCH: f64 = 0.0026;
 /// A wire's coil.
 const COIL_RADIUS: f64 = 0.0010;
-const COIL_TURNS: u32 = 18;
+const COIL_TURNS: u32 = 17;
 /// Half the length of the coils.
 const COIL_REACH: f64 = 0.128;
 
@@ -103,7 +103,14 @@ fn wires(model: &mut Model, materials: &Materials, place: DAffine3) {
             })
             .collect();
         // The coils are wide open: X is not far from their direction, so the side is across it.
-        model.tube(&points, 0.00045, DVec3::Y, (3, 108), materials.steel, place);
+        model.tube(
+            &points,
+            0.00045,
+            DVec3::Y,
+            (3, (COIL_TURNS * POINTS_A_TURN) as usize),
+            materials.steel,
+            place,
+        );
     }
     let half = 0.5 * f64::from(WIRES) * WIRE_PITCH + 0.002;
     for x in [-COIL_REACH, COIL_REACH] {
@@ -120,5 +127,5 @@ fn badge(model: &mut Model, materials: &Materials, place: DAffine3) {
     let face = [(0.0148, 0.0014), (0.0, 0.0010)];
     let at = DVec3::new(RADIUS - 0.0008, 0.5 * HEIGHT, 0.0);
     let front = place * turned(TURNS, DVec3::ZERO) * aimed(DVec3::X, at);
-    model.lathe(&[(&plate, 4), (&face, 2)], 36, materials.brass, front);
+    model.lathe(&[(&plate, 4), (&face, 2)], 30, materials.brass, front);
 }

@@ -44,7 +44,7 @@ fn lug_body(model: &mut Model, materials: &Materials, place: DAffine3) {
         (0.0, 0.110),
     ];
     let post = place * DAffine3::from_translation(DVec3::X * ROD);
-    model.lathe(&[(&profile, 24)], 14, materials.chrome, post);
+    model.lathe(&[(&profile, 22)], 14, materials.chrome, post);
     for height in [0.0455, 0.0945] {
         let foot = [(0.0085, 0.0), (0.0080, 0.002), (0.0045, 0.004), (0.0040, 0.0145)];
         let at = place * aimed(DVec3::X, DVec3::new(RADIUS - 0.0005, height, 0.0));
@@ -132,6 +132,6 @@ fn sticks(model: &mut Model, materials: &Materials, place: DAffine3) {
     ];
     for (tip, along) in laid {
         let at = place * aimed(along, tip);
-        model.lathe(&[(&profile, 42)], 20, materials.wood, at);
+        model.lathe(&[(&profile, 42)], 18, materials.wood, at);
     }
 }

@@ -61,7 +61,7 @@ fn studio(model: &mut Model, materials: &Materials) {
         .iter()
         .map(|&(z, y)| [-3.0, 0.0, 3.0].map(|x| DVec3::new(x, y, z)).to_vec())
         .collect();
-    model.surface(&Sheet::through(&rows), (10, 60), materials.backdrop, DAffine3::IDENTITY);
+    model.surface(&Sheet::through(&rows), (8, 48), materials.backdrop, DAffine3::IDENTITY);
 }
 
 fn lights(model: &mut Model) {
