@@ -36,7 +36,7 @@ fn varied() -> Scene {
         let normal = Vec3::new(0.1 * i as f32, 1.0, 0.3).normalize();
         DraftTriangle {
             corners: [corner(x, 0.1), corner(x + 1.0, 0.2), corner(x, 1.3)],
-            normals: [if i % 3 == 0 { normal } else { Vec3::ZERO }; 3],
+            normals: [if i.is_multiple_of(3) { normal } else { Vec3::ZERO }; 3],
             material: i % 4 / 2,
         }
     };

@@ -1,5 +1,6 @@
 //! What the loaders make of small files, sound and damaged.
 
+mod damaged_gltf;
 mod gltf;
 mod obj;
 mod toml;
