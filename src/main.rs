@@ -1,2 +1,5 @@
-//! umbra
-fn main() {}
+//! The command line of umbra.
+
+fn main() -> std::process::ExitCode {
+    umbra::cli::main()
+}

@@ -1,7 +1,10 @@
 //! Rays, triangles, boxes: the bits every engine is given.
 
 mod bounds;
+pub mod intersect;
+pub mod lanes;
 mod ray;
+pub mod surface;
 mod triangles;
 
 pub use bounds::Bounds;

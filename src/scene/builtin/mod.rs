@@ -1,12 +1,125 @@
-//! Scenes the program makes itself.
+//! The four scenes of Pearce & Jevans 1991, rebuilt.
+//!
+//! The paper gives their triangles and lights as numbers only (its Table 2), so the shapes, colours
+//! and places are ours; the numbers are met exactly. Every scene is the same to the last bit on
+//! every machine.
 
-use super::Draft;
+mod chair_room;
+mod drum;
+mod jittered;
+mod memory;
+mod model;
+mod random;
 
-/// The names of the built-in scenes.
-pub const NAMES: &[&str] = &[];
+use model::Model;
+use random::Random;
 
-/// Makes the built-in scene of that name.
+use super::{Draft, SceneError};
+
+/// The scenes' names.
+pub const NAMES: &[&str] = &["jittered-sparse", "jittered-dense", "drum", "chair-room"];
+
+/// Least and greatest multiple of the paper's triangles.
+pub const TESSELLATION: (f64, f64) = (0.01, 100.0);
+
+/// The picture that the paper made of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct View {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Samples along each side of a pixel.
+    pub samples_per_side: u32,
+}
+
+/// The picture that the paper made of a scene.
 #[must_use]
-pub fn draft(_name: &str) -> Option<Draft> {
-    None
+pub fn view(name: &str) -> Option<View> {
+    let (width, height) = if name == "drum" { (512, 512) } else { (640, 486) };
+    NAMES.contains(&name).then_some(View { width, height, samples_per_side: 3 })
+}
+
+/// The scene with the paper's number of triangles; `None` if no scene has that name.
+#[must_use]
+pub fn draft(name: &str) -> Option<Draft> {
+    draft_at(name, 1.0).ok()
+}
+
+/// The scene with `tessellation` times the paper's triangles.
+///
+/// # Errors
+/// [`SceneError::Unknown`] if no scene has that name; [`SceneError::TooLarge`] if the tessellation
+/// is out of its range or memory does not hold the triangles.
+pub fn draft_at(name: &str, tessellation: f64) -> Result<Draft, SceneError> {
+    let unknown = || SceneError::Unknown { name: name.to_owned(), known: NAMES.join(", ") };
+    if !NAMES.contains(&name) {
+        return Err(unknown());
+    }
+    let (least, greatest) = TESSELLATION;
+    if !(least..=greatest).contains(&tessellation) {
+        return Err(SceneError::TooLarge {
+            name: name.to_owned(),
+            problem: format!("tessellation {tessellation} is not between {least} and {greatest}"),
+        });
+    }
+    match name {
+        "jittered-sparse" => jittered::draft(name, 0.2, tessellation),
+        "jittered-dense" => jittered::draft(name, 1.0, tessellation),
+        _ => {
+            let describe = description(name).ok_or_else(unknown)?;
+            let density = density(describe, tessellation);
+            let count = counted(describe, density);
+            memory::check(name, count)?;
+            let mut model = Model::new(name, density, false);
+            describe(&mut model);
+            Ok(model.draft)
+        }
+    }
+}
+
+/// How many triangles [`draft_at`] makes, without making them; `None` if no scene has that name.
+#[must_use]
+pub fn triangle_count(name: &str, tessellation: f64) -> Option<u64> {
+    match name {
+        "jittered-sparse" | "jittered-dense" => Some(jittered::triangle_count(tessellation)),
+        _ => description(name).map(|describe| counted(describe, density(describe, tessellation))),
+    }
+}
+
+/// What puts a scene of surfaces together.
+type Describe = fn(&mut Model);
+
+fn description(name: &str) -> Option<Describe> {
+    match name {
+        "drum" => Some(drum::describe),
+        "chair-room" => Some(chair_room::describe),
+        _ => None,
+    }
+}
+
+fn counted(describe: Describe, density: f64) -> u64 {
+    let mut model = Model::new("", density, true);
+    describe(&mut model);
+    model.count
+}
+
+/// The factor on resolutions that comes nearest to the factor on triangles.
+///
+/// Resolutions are whole numbers and no shape goes below its fewest triangles, so the square root is
+/// only a first guess; the rest is bisection over counts.
+fn density(describe: Describe, tessellation: f64) -> f64 {
+    /// Enough to tell apart densities that round to different resolutions.
+    const STEPS: usize = 24;
+    if tessellation == 1.0 {
+        return 1.0;
+    }
+    let wanted = counted(describe, 1.0) as f64 * tessellation;
+    let (mut low, mut high) = (0.0, 2.0 * tessellation.sqrt());
+    for _ in 0..STEPS {
+        let middle = 0.5 * (low + high);
+        if (counted(describe, middle) as f64) < wanted { low = middle } else { high = middle }
+    }
+    let missed = |density: f64| (counted(describe, density) as f64 - wanted).abs();
+    if missed(low) < missed(high) { low } else { high }
 }

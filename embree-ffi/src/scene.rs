@@ -1,0 +1,333 @@
+//! Building a scene of triangle meshes.
+
+use std::{ffi::c_void, fmt, num::NonZeroU32, ops::ControlFlow, panic::resume_unwind, ptr};
+
+use crate::{
+    Device, Error,
+    bindings::{
+        Embree, RTCBufferType, RTCBuildQuality, RTCFormat, RTCGeometry, RTCGeometryType, RTCScene,
+        RTCSceneFlags,
+    },
+    monitor::{Progress, watch_progress},
+};
+
+/// How much work goes into the acceleration structure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BuildQuality {
+    /// One tree per mesh under a top tree: quick to build, larger, slower to query.
+    Low,
+    /// A surface-area heuristic.
+    #[default]
+    Medium,
+    /// With spatial splits, unless the scene is robust or compact. A filter may then be asked twice about one triangle.
+    High,
+}
+
+/// How a scene is to be built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SceneOptions {
+    quality: BuildQuality,
+    robust: bool,
+    compact: bool,
+    packet_filters: bool,
+}
+
+impl SceneOptions {
+    /// The quality; medium by default.
+    pub fn quality(self, quality: BuildQuality) -> Self {
+        Self { quality, ..self }
+    }
+
+    /// Pluecker's triangle test and conservative boxes: far fewer rays slip through edges and vertices. Off by default.
+    pub fn robust(self, robust: bool) -> Self {
+        Self { robust, ..self }
+    }
+
+    /// Half the memory, somewhat slower. Off by default.
+    pub fn compact(self, compact: bool) -> Self {
+        Self { compact, ..self }
+    }
+
+    /// Allow filters on packets ([`Scene::filtered_packets`]). Off by default. Single rays can always be filtered.
+    pub fn packet_filters(self, packet_filters: bool) -> Self {
+        Self { packet_filters, ..self }
+    }
+
+    fn flags(self) -> RTCSceneFlags {
+        let flag = |wanted: bool, flag: RTCSceneFlags| if wanted { flag.0 } else { 0 };
+        RTCSceneFlags(
+            flag(self.robust, RTCSceneFlags::RTC_SCENE_FLAG_ROBUST)
+                | flag(self.compact, RTCSceneFlags::RTC_SCENE_FLAG_COMPACT)
+                | flag(
+                    self.packet_filters,
+                    RTCSceneFlags::RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS,
+                ),
+        )
+    }
+}
+
+/// Triangles that share vertices. Triangles with a coordinate that is NaN, infinite or beyond 1.844e18 are never hit.
+#[derive(Debug, Clone, Copy)]
+pub struct Mesh<'m> {
+    vertices: &'m [[f32; 3]],
+    triangles: &'m [[u32; 3]],
+    mask: u32,
+}
+
+impl<'m> Mesh<'m> {
+    /// Seen by every ray.
+    pub fn new(vertices: &'m [[f32; 3]], triangles: &'m [[u32; 3]]) -> Self {
+        Self { vertices, triangles, mask: !0 }
+    }
+
+    /// Seen only by rays whose mask shares a bit with this one.
+    pub fn with_mask(self, mask: NonZeroU32) -> Self {
+        Self { mask: mask.get(), ..self }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        for (what, count) in
+            [("vertices", self.vertices.len()), ("triangles", self.triangles.len())]
+        {
+            if count >= u32::MAX as usize {
+                return Err(Error::TooMany { what, count });
+            }
+        }
+        let vertices = self.vertices.len();
+        for (triangle, corners) in self.triangles.iter().enumerate() {
+            if let Some(&index) = corners.iter().find(|&&index| index as usize >= vertices) {
+                return Err(Error::IndexOutOfRange { triangle, index, vertices });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A scene that is still being put together; it cannot be asked anything. [`commit`](Self::commit) makes it a [`Scene`].
+#[derive(Debug)]
+pub struct SceneBuilder {
+    owner: SceneOwner,
+    options: SceneOptions,
+}
+
+impl SceneBuilder {
+    /// An empty scene.
+    pub fn new(device: &Device, options: SceneOptions) -> Result<Self, Error> {
+        let api = &device.library().api;
+        // SAFETY: the device is alive.
+        let raw = unsafe { api.rtcNewScene(device.raw()) };
+        if raw.is_null() {
+            return Err(unexplained(device));
+        }
+        let owner = SceneOwner { raw, device: device.clone() };
+        let quality = match options.quality {
+            BuildQuality::Low => RTCBuildQuality::RTC_BUILD_QUALITY_LOW,
+            BuildQuality::Medium => RTCBuildQuality::RTC_BUILD_QUALITY_MEDIUM,
+            BuildQuality::High => RTCBuildQuality::RTC_BUILD_QUALITY_HIGH,
+        };
+        // SAFETY: the scene is alive and ours alone.
+        unsafe {
+            api.rtcSetSceneFlags(raw, options.flags());
+            api.rtcSetSceneBuildQuality(raw, quality);
+        }
+        device.take_error()?;
+        Ok(Self { owner, options })
+    }
+
+    /// Copies a mesh into the scene. Its number is how many were added before.
+    ///
+    /// The copy lies in Embree's own buffers, which are padded as its vector loads need.
+    pub fn add(&mut self, mesh: Mesh) -> Result<u32, Error> {
+        mesh.check()?;
+        let device = &self.owner.device;
+        let api = &device.library().api;
+        // SAFETY: the device is alive.
+        let raw = unsafe {
+            api.rtcNewGeometry(device.raw(), RTCGeometryType::RTC_GEOMETRY_TYPE_TRIANGLE)
+        };
+        if raw.is_null() {
+            return Err(unexplained(device));
+        }
+        let geometry = GeometryOwner { api, raw };
+        geometry.fill(
+            RTCBufferType::RTC_BUFFER_TYPE_VERTEX,
+            RTCFormat::RTC_FORMAT_FLOAT3,
+            mesh.vertices,
+            device,
+        )?;
+        geometry.fill(
+            RTCBufferType::RTC_BUFFER_TYPE_INDEX,
+            RTCFormat::RTC_FORMAT_UINT3,
+            mesh.triangles,
+            device,
+        )?;
+        // SAFETY: scene and geometry are alive and ours alone. The scene keeps a reference of its own.
+        let id = unsafe {
+            api.rtcSetGeometryMask(raw, mesh.mask);
+            api.rtcCommitGeometry(raw);
+            api.rtcAttachGeometry(self.owner.raw, raw)
+        };
+        device.take_error()?;
+        Ok(id)
+    }
+
+    /// Builds the acceleration structure.
+    pub fn commit(self) -> Result<Scene, Error> {
+        self.build()
+    }
+
+    /// [`commit`](Self::commit), telling `progress` the fraction done, from any of the building threads.
+    ///
+    /// [`ControlFlow::Break`] cancels with [`ErrorCode::Cancelled`](crate::ErrorCode::Cancelled). A panic cancels too, and
+    /// goes on from here.
+    pub fn commit_with_progress(
+        self,
+        progress: impl Fn(f64) -> ControlFlow<()> + Sync,
+    ) -> Result<Scene, Error> {
+        let api = &self.owner.device.library().api;
+        let raw = self.owner.raw;
+        let progress = Progress::new(&progress);
+        // SAFETY: the scene is alive and ours alone, and `progress` outlives the build, the only time it is called.
+        unsafe {
+            api.rtcSetSceneProgressMonitorFunction(
+                raw,
+                Some(watch_progress),
+                (&raw const progress).cast_mut().cast(),
+            );
+        }
+        let outcome = self.build();
+        if let Ok(scene) = &outcome {
+            // SAFETY: the scene is alive and still ours alone; it must not keep a pointer to `progress`.
+            unsafe { api.rtcSetSceneProgressMonitorFunction(scene.raw(), None, ptr::null_mut()) };
+        }
+        if let Some(payload) = progress.take_panic() {
+            resume_unwind(payload);
+        }
+        outcome
+    }
+
+    fn build(self) -> Result<Scene, Error> {
+        let device = &self.owner.device;
+        // SAFETY: the scene is alive and ours alone.
+        unsafe { device.library().api.rtcCommitScene(self.owner.raw) };
+        device.take_error()?;
+        Ok(Scene { owner: self.owner, packet_filters: self.options.packet_filters })
+    }
+}
+
+/// A committed scene. Any number of threads may ask it at once.
+#[derive(Debug)]
+pub struct Scene {
+    owner: SceneOwner,
+    packet_filters: bool,
+}
+
+impl Scene {
+    /// The device it was built by.
+    pub fn device(&self) -> &Device {
+        &self.owner.device
+    }
+
+    /// The first error that Embree met in this thread's queries since the last look.
+    ///
+    /// Queries do not look themselves, it would cost more than many of them. None of them is known to meet an error.
+    pub fn check(&self) -> Result<(), Error> {
+        self.owner.device.take_error()
+    }
+
+    pub(crate) fn has_packet_filters(&self) -> bool {
+        self.packet_filters
+    }
+
+    #[inline]
+    pub(crate) fn raw(&self) -> RTCScene {
+        self.owner.raw
+    }
+
+    #[inline]
+    pub(crate) fn api(&self) -> &'static Embree {
+        &self.owner.device.library().api
+    }
+}
+
+/// The one reference we hold to a scene.
+struct SceneOwner {
+    raw: RTCScene,
+    device: Device,
+}
+
+// SAFETY: a scene may be used and released from any thread. Changing it needs `&mut` or ownership of the builder, and
+// after the commit nothing changes it: queries only read.
+unsafe impl Send for SceneOwner {}
+// SAFETY: as above.
+unsafe impl Sync for SceneOwner {}
+
+impl Drop for SceneOwner {
+    fn drop(&mut self) {
+        // SAFETY: our one reference, released once, while the device is alive.
+        unsafe { self.device.library().api.rtcReleaseScene(self.raw) }
+    }
+}
+
+impl fmt::Debug for SceneOwner {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        self.device.fmt(formatter)
+    }
+}
+
+/// The one reference we hold to a geometry until the scene has its own.
+struct GeometryOwner<'a> {
+    api: &'a Embree,
+    raw: RTCGeometry,
+}
+
+impl GeometryOwner<'_> {
+    /// Copies `items` into a new buffer of Embree's.
+    fn fill<T: Copy>(
+        &self,
+        kind: RTCBufferType,
+        format: RTCFormat,
+        items: &[[T; 3]],
+        device: &Device,
+    ) -> Result<(), Error> {
+        // SAFETY: the geometry is alive.
+        let buffer: *mut c_void = unsafe {
+            self.api.rtcSetNewGeometryBuffer(
+                self.raw,
+                kind,
+                0,
+                format,
+                size_of::<[T; 3]>(),
+                items.len(),
+            )
+        };
+        if items.is_empty() {
+            // Embree then has no buffer to show, or one of no use.
+            return device.take_error();
+        }
+        if buffer.is_null() {
+            return Err(unexplained(device));
+        }
+        // SAFETY: the buffer was made for as many items of that size, and nobody else knows it yet.
+        unsafe {
+            ptr::copy_nonoverlapping(items.as_ptr().cast::<u8>(), buffer.cast(), size_of_val(items))
+        };
+        Ok(())
+    }
+}
+
+impl Drop for GeometryOwner<'_> {
+    fn drop(&mut self) {
+        // SAFETY: our one reference, released once, while the device is alive.
+        unsafe { self.api.rtcReleaseGeometry(self.raw) }
+    }
+}
+
+/// The error behind a null handle.
+fn unexplained(device: &Device) -> Error {
+    let message = || "no reason given".to_owned();
+    device
+        .take_error()
+        .err()
+        .unwrap_or_else(|| Error::Embree { code: crate::ErrorCode::Unknown, message: message() })
+}

@@ -1,0 +1,101 @@
+//! Arguments that several commands share.
+
+use std::path::Path;
+use std::time::Instant;
+
+use clap::Args;
+
+use super::Failure;
+use crate::occlusion::{Backend, BuildOptions, GridOptions, Occlusion, Test, build};
+use crate::scene::Scene;
+
+/// Which engine answers.
+#[derive(Args)]
+pub(super) struct EngineOptions {
+    /// The engine that answers occlusion queries
+    #[arg(long, value_enum, default_value_t = Backend::Grid)]
+    pub backend: Backend,
+    /// The triangle test: exact, unless the engine is embree, which has pluecker (its robust mode, the
+    /// default) and moller (its default mode)
+    #[arg(long, value_enum)]
+    test: Option<Test>,
+    /// Voxels of the grid along x, y and z, instead of a choice by the number of triangles
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_resolution)]
+    pub grid: Option<[u32; 3]>,
+    /// Threads; all processors if not given
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+}
+
+fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
+    let parts: Vec<u32> = text
+        .split(',')
+        .map(|part| part.trim().parse().ok().filter(|n| (1..=1024).contains(n)))
+        .collect::<Option<_>>()
+        .ok_or("give three whole numbers from 1 to 1024, like 64,64,32")?;
+    parts.try_into().map_err(|_| "give three numbers, like 64,64,32".to_owned())
+}
+
+impl EngineOptions {
+    /// The test that was asked for, or the backend's own choice.
+    pub fn test(&self) -> Test {
+        self.test.unwrap_or_else(|| self.backend.default_test())
+    }
+
+    /// Builds the backend; also says how many seconds that took.
+    pub fn build(&self, scene: &Scene) -> Result<(Box<dyn Occlusion>, f64), Failure> {
+        let grid = self.grid.map_or_else(GridOptions::default, GridOptions::Resolution);
+        let options = BuildOptions { grid, ..BuildOptions::default() };
+        let start = Instant::now();
+        let backend = build(self.backend, self.test(), &scene.triangles, &options)?;
+        Ok((backend, start.elapsed().as_secs_f64()))
+    }
+
+    /// A pool of the threads that were asked for.
+    pub fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
+        let threads = match self.threads {
+            Some(0) => return Err(Failure::Input("--threads 0: give at least 1".to_owned())),
+            Some(n) => n,
+            None => 0,
+        };
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|e| Failure::Input(format!("cannot start {threads} threads: {e}")))
+    }
+}
+
+/// Loads a scene, and says what the program decided for the user.
+pub(super) fn load_scene(name: &str) -> Result<Scene, Failure> {
+    let scene = crate::scene::load(name)?;
+    for note in &scene.notes {
+        eprintln!("umbra: {}: {note}", scene.name);
+    }
+    Ok(scene)
+}
+
+/// Fails early where a file could not be written at the end.
+pub(super) fn check_writable(path: &Path) -> Result<(), Failure> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let refuse =
+        |reason: String| Failure::Input(format!("cannot write {}: {reason}", path.display()));
+    if !folder.is_dir() {
+        return Err(refuse(format!("there is no folder {}; make it first", folder.display())));
+    }
+    if path.is_dir() {
+        return Err(refuse("it is a folder; give a file name".to_owned()));
+    }
+    tempfile::tempfile_in(folder).map_err(|e| refuse(e.to_string()))?;
+    Ok(())
+}
+
+/// Writes statistics as JSON.
+pub(super) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
+    let mut text = serde_json::to_string_pretty(value).expect("statistics are plain data");
+    text.push('\n');
+    crate::render::write_whole(path, text.as_bytes())
+        .map_err(|e| Failure::Input(format!("cannot write {}: {e}", path.display())))
+}

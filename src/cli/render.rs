@@ -1,0 +1,183 @@
+//! `umbra render`: a picture of a scene.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::Failure;
+use super::options::{EngineOptions, check_writable, load_scene, write_json};
+use super::progress::with_bar;
+use crate::render::{
+    Order, Picture, Progress, Rendered, Settings, Statistics, render, write_picture,
+};
+use crate::scene::Dropped;
+use crate::shadow::{Method, prepare};
+
+/// Renders a picture of a scene
+#[derive(Args)]
+pub(super) struct Render {
+    /// A built-in scene, or an .obj, .glb, .gltf or .toml file
+    scene: String,
+    /// The picture to write: .png or .exr
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    #[command(flatten)]
+    engine: EngineOptions,
+    /// The method that stands before the engine
+    #[arg(long, value_enum, default_value_t)]
+    shadows: Method,
+    /// Size of the picture
+    #[arg(long, value_name = "WxH", default_value = "640x486", value_parser = parse_size)]
+    size: (u32, u32),
+    /// Samples along each side of a pixel: 3 gives 9 samples
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    samples: u32,
+    /// Reflections and refractions that a ray may go through
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    depth: u8,
+    /// The order in which pixels are rendered
+    #[arg(long, value_enum, default_value_t)]
+    order: Order,
+    /// Bits a channel of a PNG: 8 or 16
+    #[arg(long, value_name = "N", default_value = "8", value_parser = ["8", "16"])]
+    bits: String,
+    /// Factor from radiance to picture; chosen from the picture if the scene says nothing
+    #[arg(long, value_name = "FACTOR")]
+    exposure: Option<f32>,
+    /// Also writes the shadow mask as a picture beside the output: NAME.mask.png
+    #[arg(long)]
+    aov: bool,
+    /// Writes all counts and times as JSON
+    #[arg(long, value_name = "FILE")]
+    stats: Option<PathBuf>,
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let (width, height) =
+        text.split_once(['x', 'X', '×']).ok_or("give it as WIDTHxHEIGHT, like 640x486")?;
+    let number =
+        |part: &str| part.trim().parse().map_err(|_| format!("'{part}' is not a number of pixels"));
+    Ok((number(width)?, number(height)?))
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    scene: &'a str,
+    triangles: usize,
+    opaque_triangles: u32,
+    lights: usize,
+    dropped: Dropped,
+    local_origin: [f64; 3],
+    notes: &'a [String],
+    backend: &'a str,
+    test: &'a str,
+    shadows: &'a str,
+    width: u32,
+    height: u32,
+    samples_per_pixel: u32,
+    threads: usize,
+    exposure: f32,
+    backend_bytes: usize,
+    shadow_bytes: usize,
+    load_seconds: f64,
+    build_seconds: f64,
+    render_seconds: f64,
+    counts: Statistics,
+}
+
+impl Render {
+    pub fn run(self) -> Result<(), Failure> {
+        let kind = Picture::of(&self.output, if self.bits == "16" { 16 } else { 8 })?;
+        let (width, height) = self.size;
+        let settings = Settings {
+            width,
+            height,
+            samples: self.samples,
+            depth: self.depth,
+            order: self.order,
+            mask: self.aov,
+            ..Settings::default()
+        };
+        settings.check()?;
+        if self.exposure.is_some_and(|e| !(e.is_finite() && e > 0.0)) {
+            return Err(Failure::Input("--exposure: give a number above 0".to_owned()));
+        }
+        check_writable(&self.output)?;
+        if let Some(stats) = &self.stats {
+            check_writable(stats)?;
+        }
+        let pool = self.engine.pool()?;
+        pool.install(|| self.render(kind, &settings))
+    }
+
+    fn render(&self, kind: Picture, settings: &Settings) -> Result<(), Failure> {
+        let start = Instant::now();
+        let scene = load_scene(&self.scene)?;
+        let load_seconds = start.elapsed().as_secs_f64();
+        let (backend, build_seconds) = self.engine.build(&scene)?;
+        let start = Instant::now();
+        let shadows = prepare(self.shadows, &scene, &*backend)?;
+        let progress = Progress::default();
+        let pixels = u64::from(settings.width) * u64::from(settings.height);
+        let rendered = with_bar(pixels, &progress, || {
+            render(&scene, &*backend, &*shadows, settings, &progress)
+        })?;
+        let render_seconds = start.elapsed().as_secs_f64();
+        let Rendered { film, mask, statistics, .. } = rendered;
+        let exposure =
+            self.exposure.or(scene.exposure).unwrap_or_else(|| film.automatic_exposure());
+        write_picture(&film, exposure, kind, &self.output)?;
+        if let Some(mask) = mask {
+            write_picture(&mask.picture(), 1.0, Picture::Png8, &beside(&self.output, "mask"))?;
+        }
+        let rays = statistics.rays;
+        eprintln!(
+            "{}: {} triangles, {} lights, {} {} {}; {} rays ({} to lights, {} of them blocked) in {:.2} s: {:.2} million a second; loaded in {:.2} s, built in {:.2} s",
+            scene.name,
+            scene.triangles.len(),
+            scene.lights.len(),
+            self.engine.backend,
+            self.engine.test(),
+            self.shadows,
+            rays.total(),
+            rays.shadow,
+            statistics.shadows.blocked,
+            render_seconds,
+            rays.total() as f64 / render_seconds / 1e6,
+            load_seconds,
+            build_seconds,
+        );
+        let Some(stats) = &self.stats else { return Ok(()) };
+        let report = Report {
+            scene: &scene.name,
+            triangles: scene.triangles.len(),
+            opaque_triangles: scene.triangles.opaque_count(),
+            lights: scene.lights.len(),
+            dropped: scene.dropped,
+            local_origin: scene.origin.to_array(),
+            notes: &scene.notes,
+            backend: self.engine.backend.name(),
+            test: self.engine.test().name(),
+            shadows: self.shadows.name(),
+            width: settings.width,
+            height: settings.height,
+            samples_per_pixel: settings.samples * settings.samples,
+            threads: rayon::current_num_threads(),
+            exposure,
+            backend_bytes: backend.memory(),
+            shadow_bytes: shadows.memory(),
+            load_seconds,
+            build_seconds,
+            render_seconds,
+            counts: statistics,
+        };
+        write_json(stats, &report)
+    }
+}
+
+/// The name of a picture that belongs to another: `room.png` and "mask" give `room.mask.png`.
+fn beside(path: &Path, what: &str) -> PathBuf {
+    path.with_extension(format!("{what}.png"))
+}

@@ -1,0 +1,71 @@
+//! Triangle tests: whether a ray meets a triangle, one file a method.
+
+mod embree;
+mod moller;
+mod own_box;
+mod pluecker;
+mod watertight;
+
+pub use embree::{AtLeast, AtMost, BoxTest, FastBox, RobustBox};
+pub use moller::Moller;
+pub use pluecker::Pluecker;
+pub use watertight::{Shear, Watertight};
+
+use super::lanes::{Lanes, Vector, splat};
+use super::{Ray, Triangle};
+
+/// What a test says of several triangles at once, a bit a lane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Claims {
+    /// The ray surely meets these.
+    pub certain: u32,
+    /// [`TriangleTest::settle`] must decide these.
+    pub open: u32,
+}
+
+/// A ray, spread over all lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct RayLanes<L> {
+    /// Origin.
+    pub origin: Vector<L>,
+    /// Direction.
+    pub direction: Vector<L>,
+    /// End of the interval.
+    pub end: L,
+    /// What [`Watertight`] needs; computed only where it is used, as everything here is inlined.
+    pub shear: Shear<L>,
+}
+
+impl<L: Lanes> RayLanes<L> {
+    /// The ray in every lane.
+    #[inline(always)]
+    pub fn new(ray: &Ray) -> Self {
+        Self {
+            origin: splat(ray.origin),
+            direction: splat(ray.direction),
+            end: L::splat(ray.end),
+            shear: Shear::new(ray),
+        }
+    }
+}
+
+/// A way to decide whether a ray meets a triangle.
+///
+/// One source serves every instruction set: [`claims`](Self::claims) is generic over the lanes, and
+/// rare lanes are left to the scalar [`settle`](Self::settle). A backend tests a triangle only by
+/// these two, so any backend whose culling is conservative gives the same answers.
+pub trait TriangleTest: Copy + Default + Send + Sync + 'static {
+    /// Tests as many triangles as `L` has lanes. The ray is valid ([`Ray::is_valid`]).
+    fn claims<L: Lanes>(ray: &RayLanes<L>, corners: &[Vector<L>; 3]) -> Claims;
+
+    /// Decides a lane that [`claims`](Self::claims) left open.
+    fn settle(ray: &Ray, triangle: &Triangle) -> bool;
+}
+
+/// Whether the ray meets the triangle, by a test in the arithmetic of `L` (one lane is used).
+#[must_use]
+pub fn meets<T: TriangleTest, L: Lanes>(ray: &Ray, triangle: &Triangle) -> bool {
+    let corners = [triangle.map(glam::Vec3A::from)];
+    let claims = T::claims::<L>(&RayLanes::new(ray), &L::gather(&corners, &[0]));
+    claims.certain & 1 != 0 || (claims.open & 1 != 0 && T::settle(ray, triangle))
+}

@@ -1,0 +1,164 @@
+//! Eight lanes: AVX2 with FMA, and AVX-512 VL, which differs from it only in the reciprocal.
+//!
+//! Every `unsafe` here has one reason. SAFETY: [`Avx`] exists in this crate only inside functions
+//! compiled with the instruction set, which run only where `Arithmetic::is_available` found it.
+
+use std::arch::x86_64::*;
+
+use glam::Vec3A;
+
+use super::{Kernel, Lanes};
+use crate::geometry::TriangleId;
+
+/// Eight f32. `RCP14`: the reciprocal of AVX-512, else that of AVX.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx<const RCP14: bool>(__m256);
+
+impl<const RCP14: bool> Lanes for Avx<RCP14> {
+    const COUNT: usize = 8;
+    type Mask = __m256;
+
+    #[inline(always)]
+    fn run<K: Kernel>(kernel: K) -> K::Answer {
+        // SAFETY: see the head of this file.
+        unsafe { if RCP14 { run_avx512(kernel) } else { run_avx2(kernel) } }
+    }
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_set1_ps(value) })
+    }
+    #[inline(always)]
+    fn gather(corners: &[[Vec3A; 3]], ids: &[TriangleId]) -> [[Self; 3]; 3] {
+        let last = ids.len() - 1;
+        let triangle = |lane: usize| &corners[ids[lane.min(last)] as usize];
+        let rows: [&[Vec3A; 3]; 8] = std::array::from_fn(triangle);
+        [transpose(rows, 0), transpose(rows, 1), transpose(rows, 2)]
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_add_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_sub_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_mul_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_fmadd_ps(self.0, b.0, c.0) })
+    }
+    #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_fmsub_ps(self.0, b.0, c.0) })
+    }
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let estimate = if RCP14 { _mm256_rcp14_ps(self.0) } else { _mm256_rcp_ps(self.0) };
+            let error = _mm256_fnmadd_ps(self.0, estimate, _mm256_set1_ps(1.0));
+            Self(_mm256_fmadd_ps(estimate, error, estimate))
+        }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_min_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_max_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn flip_sign(self, sign: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_xor_ps(self.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0))) })
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> __m256 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn less_equal(self, other: Self) -> __m256 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn not_equal(self, other: Self) -> __m256 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm256_cmp_ps::<_CMP_NEQ_UQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn select(mask: __m256, yes: Self, no: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_blendv_ps(no.0, yes.0, mask) })
+    }
+    #[inline(always)]
+    fn and(a: __m256, b: __m256) -> __m256 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm256_and_ps(a, b) }
+    }
+    #[inline(always)]
+    fn or(a: __m256, b: __m256) -> __m256 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm256_or_ps(a, b) }
+    }
+    #[inline(always)]
+    fn bits(mask: __m256) -> u32 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm256_movemask_ps(mask) as u32 }
+    }
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn run_avx2<K: Kernel>(kernel: K) -> K::Answer {
+    kernel.run()
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn run_avx512<K: Kernel>(kernel: K) -> K::Answer {
+    kernel.run()
+}
+
+/// 8 rows of (x, y, z, _) as x, y and z, by halves of 128 bits.
+#[inline(always)]
+fn transpose<const RCP14: bool>(rows: [&[Vec3A; 3]; 8], corner: usize) -> [Avx<RCP14>; 3] {
+    // SAFETY: see the head of this file.
+    unsafe {
+        let (r0, r1) = (pair(rows, corner, 0), pair(rows, corner, 1));
+        let (r2, r3) = (pair(rows, corner, 2), pair(rows, corner, 3));
+        let (xy01, z01) = (_mm256_unpacklo_ps(r0, r1), _mm256_unpackhi_ps(r0, r1));
+        let (xy23, z23) = (_mm256_unpacklo_ps(r2, r3), _mm256_unpackhi_ps(r2, r3));
+        [
+            Avx(_mm256_shuffle_ps::<0x44>(xy01, xy23)),
+            Avx(_mm256_shuffle_ps::<0xEE>(xy01, xy23)),
+            Avx(_mm256_shuffle_ps::<0x44>(z01, z23)),
+        ]
+    }
+}
+
+/// Rows `i` and `i + 4` in one register.
+#[inline(always)]
+fn pair(rows: [&[Vec3A; 3]; 8], corner: usize, i: usize) -> __m256 {
+    // SAFETY: see the head of this file.
+    unsafe {
+        let low = _mm256_castps128_ps256(rows[i][corner].into());
+        _mm256_insertf128_ps::<1>(low, rows[i + 4][corner].into())
+    }
+}

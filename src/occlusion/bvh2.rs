@@ -1,0 +1,72 @@
+//! The binary BVH of `obvhs` (PLOC, reinsertion), as a culler.
+//!
+//! obvhs' own any-hit traversal is used for culling only, in a space of ours and with a ray of ours
+//! (see `culling_space`), and the triangle test is ours. So its answers are those of brute force,
+//! axis-parallel rays and scenes of any size and place included, where obvhs by itself errs.
+
+use std::time::Duration;
+
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::ray::RayHit;
+use obvhs::{BvhBuildParams, fast_stack};
+
+use super::brute::visit_all;
+use super::culling_space::{CullingSpace, Passage};
+use super::{Cell, Visit, Walk};
+use crate::geometry::{Ray, TriangleId, Triangles};
+
+/// A binary bounding volume hierarchy.
+pub struct Bvh2 {
+    tree: obvhs::bvh2::Bvh2,
+    space: CullingSpace,
+}
+
+impl Bvh2 {
+    /// Builds with obvhs' medium preset.
+    ///
+    /// # Panics
+    /// Without triangles.
+    #[must_use]
+    pub fn new(triangles: &Triangles) -> Self {
+        let space = CullingSpace::new(&triangles.bounds().expect("there are triangles"));
+        let boxes: Vec<_> =
+            (0..triangles.len() as u32).map(|id| space.map(&triangles.bounds_of(id))).collect();
+        let tree = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
+        Self { tree, space }
+    }
+}
+
+impl Walk for Bvh2 {
+    #[inline(always)]
+    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
+        let culled = match self.space.passage(ray) {
+            Passage::Outside => return,
+            Passage::Everything => return visit_all(&self.tree.primitive_indices, 8, visitor),
+            Passage::Through(culled) => culled,
+        };
+        let order = &self.tree.primitive_indices[..];
+        fast_stack!(u32, (96, 192), self.tree.max_depth, stack, {
+            self.tree.ray_traverse_dynamic(
+                &mut stack,
+                culled.ray,
+                &mut RayHit::none(),
+                |node, ray, _| {
+                    let cell =
+                        Cell { start: node.first_index, end: node.first_index + node.prim_count };
+                    let run = &order[cell.start as usize..cell.end as usize];
+                    let flow = visitor.visit(cell, run);
+                    ray.tmax = ray.tmax.min(culled.limit(visitor.end()));
+                    flow.is_continue()
+                },
+            );
+        });
+    }
+
+    fn order(&self) -> &[TriangleId] {
+        &self.tree.primitive_indices
+    }
+
+    fn memory(&self) -> usize {
+        size_of_val(&*self.tree.nodes) + size_of_val(&*self.tree.primitive_indices)
+    }
+}

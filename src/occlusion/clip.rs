@@ -1,0 +1,55 @@
+//! The part of a ray that is near a box, in f64.
+
+use glam::DVec3;
+
+use crate::geometry::{Bounds, Ray};
+
+/// Origins farther from the box than this many diagonals are not clipped but answered by testing
+/// everything: f64 places them with a relative error of 2⁻⁵², which is 2⁻³² diagonals at this
+/// distance, far below the padding of any culler.
+const FARTHEST_ORIGIN: f64 = (1u64 << 20) as f64;
+
+/// How a ray passes a box.
+pub(super) enum Clip {
+    /// It does not come near it.
+    Outside,
+    /// It is near it from the first to the second `t`; both finite.
+    Inside(f64, f64),
+    /// The origin is too far away to say.
+    Everything,
+}
+
+/// Clips the segment to the box, which the caller has padded.
+#[inline]
+pub(super) fn clip(ray: &Ray, min: DVec3, max: DVec3) -> Clip {
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let reach = FARTHEST_ORIGIN * (max - min).max_element();
+    if (origin - min).abs().max_element() > reach {
+        return Clip::Everything;
+    }
+    let (mut enter, mut leave) = (0.0, f64::from(ray.end));
+    for axis in 0..3 {
+        let (low, high) = (min[axis] - origin[axis], max[axis] - origin[axis]);
+        if direction[axis] == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return Clip::Outside;
+            }
+            continue;
+        }
+        let inverse = direction[axis].recip();
+        let (a, b) = (low * inverse, high * inverse);
+        enter = a.min(b).max(enter);
+        leave = a.max(b).min(leave);
+    }
+    // A zero direction never leaves: it is a point, and blocks nothing.
+    if enter <= leave && leave.is_finite() { Clip::Inside(enter, leave) } else { Clip::Outside }
+}
+
+/// How far a culler must look beyond exact geometry: `fraction` of its own resolution, and at least
+/// what f32 tests may err by on coordinates of this size.
+pub(super) fn padding(bounds: &Bounds, resolution: f64) -> f64 {
+    /// The own-box test of f32 hits allows 16 roundings of origin and corner each; twice that.
+    const ROUNDINGS: f64 = 64.0 * f32::EPSILON as f64;
+    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    resolution.max(ROUNDINGS * f64::from(largest)).max(f64::MIN_POSITIVE)
+}

@@ -1,0 +1,391 @@
+//! A culler and a triangle test make a backend.
+
+use std::marker::PhantomData;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use super::nearest::distance;
+use super::walk::walk_any;
+use super::{Cell, Nearest, Occluder, Occlusion, Tally, Visit, Walk};
+use crate::geometry::intersect::{RayLanes, TriangleTest};
+#[cfg(not(target_arch = "x86_64"))]
+use crate::geometry::lanes::Scalar;
+use crate::geometry::lanes::{Arithmetic, Kernel, Lanes};
+#[cfg(target_arch = "x86_64")]
+use crate::geometry::lanes::{Avx, Sse};
+use crate::geometry::{Ray, TriangleId, Triangles};
+
+/// The backend that culls by `W` and decides by `T`.
+pub struct Engine<W, T> {
+    triangles: Arc<Triangles>,
+    walk: W,
+    arithmetic: Arithmetic,
+    test: PhantomData<T>,
+}
+
+impl<W: Walk, T: TriangleTest> Engine<W, T> {
+    /// Puts culler and test together; the arithmetic is that of this CPU unless another is named.
+    ///
+    /// # Panics
+    /// If this CPU lacks the arithmetic: see [`Arithmetic::is_available`].
+    #[must_use]
+    pub fn new(triangles: Arc<Triangles>, walk: W, arithmetic: Option<Arithmetic>) -> Self {
+        let arithmetic = arithmetic.unwrap_or_else(Arithmetic::of_this_cpu);
+        assert!(arithmetic.is_available(), "this CPU has no {} arithmetic", arithmetic.name());
+        Self { triangles, walk, arithmetic, test: PhantomData }
+    }
+
+    /// The culler.
+    #[must_use]
+    pub fn walk(&self) -> &W {
+        &self.walk
+    }
+
+    /// Runs a job compiled for the instruction set of the arithmetic, which `new` checked.
+    #[inline]
+    fn run<J: Job<W, T>>(&self, job: J) -> J::Answer {
+        #[cfg(target_arch = "x86_64")]
+        match self.arithmetic {
+            Arithmetic::Sse => Sse::run(InLanes::<_, _, Sse>(job, self, PhantomData)),
+            Arithmetic::Avx2 => {
+                Avx::<false>::run(InLanes::<_, _, Avx<false>>(job, self, PhantomData))
+            }
+            Arithmetic::Avx512 => {
+                Avx::<true>::run(InLanes::<_, _, Avx<true>>(job, self, PhantomData))
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        job.run::<Scalar<false, false>>(self)
+    }
+}
+
+/// Something to do with an engine, in lanes of any kind.
+trait Job<W: Walk, T: TriangleTest> {
+    type Answer;
+    fn run<L: Lanes>(self, engine: &Engine<W, T>) -> Self::Answer;
+}
+
+/// A job in lanes of one kind.
+struct InLanes<J, E, L>(J, E, PhantomData<L>);
+
+impl<W: Walk, T: TriangleTest, J: Job<W, T>, L: Lanes> Kernel for InLanes<J, &Engine<W, T>, L> {
+    type Answer = J::Answer;
+
+    #[inline(always)]
+    fn run(self) -> J::Answer {
+        self.0.run::<L>(self.1)
+    }
+}
+
+impl<W: Walk, T: TriangleTest> Occlusion for Engine<W, T> {
+    fn occluder(&self, ray: &Ray, tally: &mut Tally) -> Option<Occluder> {
+        self.run(AnyOccluder { ray, within: None, tally })
+    }
+
+    fn occluder_in(&self, cell: Cell, ray: &Ray, tally: &mut Tally) -> Option<Occluder> {
+        self.run(AnyOccluder { ray, within: Some(cell), tally })
+    }
+
+    fn meets(&self, triangle: TriangleId, ray: &Ray, tally: &mut Tally) -> bool {
+        self.run(One { ray, triangle, tally })
+    }
+
+    fn transparent(&self, ray: &Ray, found: &mut Vec<TriangleId>, tally: &mut Tally) {
+        found.clear();
+        if (self.triangles.opaque_count() as usize) < self.triangles.len() {
+            self.run(AllTransparent { ray, found, tally });
+            found.sort_unstable();
+            found.dedup();
+        }
+    }
+
+    fn nearest(&self, ray: &Ray, tally: &mut Tally) -> Option<Nearest> {
+        self.run(NearestHit { ray, tally })
+    }
+
+    fn order(&self) -> &[TriangleId] {
+        self.walk.order()
+    }
+
+    fn memory(&self) -> usize {
+        self.walk.memory()
+    }
+}
+
+/// Tests triangles of a cell; calls `hit` for each wanted one that the ray meets, in their order, until
+/// it breaks.
+#[inline(always)]
+fn test_each<T: TriangleTest, L: Lanes>(
+    triangles: &Triangles,
+    ray: &Ray,
+    lanes: &RayLanes<L>,
+    ids: &[TriangleId],
+    tally: &mut Tally,
+    wanted: impl Fn(TriangleId) -> bool,
+    hit: impl FnMut(TriangleId) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    tally.triangle_tests += ids.len() as u64;
+    // A culler may have come here through a closure of its own: see `lanes`.
+    L::run(TestEach::<T, L, _, _> { triangles, ray, lanes, ids, wanted, hit, test: PhantomData })
+}
+
+struct TestEach<'a, T, L, Wanted, Hit> {
+    triangles: &'a Triangles,
+    ray: &'a Ray,
+    lanes: &'a RayLanes<L>,
+    ids: &'a [TriangleId],
+    wanted: Wanted,
+    hit: Hit,
+    test: PhantomData<T>,
+}
+
+impl<T, L, Wanted, Hit> Kernel for TestEach<'_, T, L, Wanted, Hit>
+where
+    T: TriangleTest,
+    L: Lanes,
+    Wanted: Fn(TriangleId) -> bool,
+    Hit: FnMut(TriangleId) -> ControlFlow<()>,
+{
+    type Answer = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run(mut self) -> ControlFlow<()> {
+        for ids in self.ids.chunks(L::COUNT) {
+            let claims = T::claims::<L>(self.lanes, &L::gather(self.triangles.corners(), ids));
+            let used = u32::MAX >> (32 - ids.len());
+            let mut candidates = (claims.certain | claims.open) & used;
+            while candidates != 0 {
+                let lane = candidates.trailing_zeros();
+                candidates &= candidates - 1;
+                let id = ids[lane as usize];
+                let certain = claims.certain & (1 << lane) != 0;
+                if (self.wanted)(id) && (certain || T::settle(self.ray, &self.triangles.get(id))) {
+                    (self.hit)(id)?;
+                }
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Whether the ray can be answered at all; counts it.
+#[inline(always)]
+fn admit(ray: &Ray, tally: &mut Tally) -> bool {
+    let valid = ray.is_valid();
+    tally.invalid_rays += u64::from(!valid);
+    valid
+}
+
+struct AnyOccluder<'a> {
+    ray: &'a Ray,
+    within: Option<Cell>,
+    tally: &'a mut Tally,
+}
+
+impl<W: Walk, T: TriangleTest> Job<W, T> for AnyOccluder<'_> {
+    type Answer = Option<Occluder>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, engine: &Engine<W, T>) -> Option<Occluder> {
+        let Self { ray, within, tally } = self;
+        if !admit(ray, tally) {
+            return None;
+        }
+        let lanes = RayLanes::<L>::new(ray);
+        let triangles = &engine.triangles;
+        let mut visitor =
+            AnyVisitor::<T, L> { triangles, ray, lanes, tally, found: None, test: PhantomData };
+        match within {
+            None => {
+                visitor.tally.traversals += 1;
+                if W::INLINED && L::COUNT > 4 {
+                    engine.walk.walk(ray, &mut visitor);
+                } else {
+                    walk_any(&engine.walk, ray, &mut visitor);
+                }
+            }
+            Some(cell) => {
+                let run = &engine.walk.order()[cell.start as usize..cell.end as usize];
+                let _ = visitor.visit(cell, run);
+            }
+        }
+        visitor.found
+    }
+}
+
+struct AnyVisitor<'a, T, L> {
+    triangles: &'a Triangles,
+    ray: &'a Ray,
+    lanes: RayLanes<L>,
+    tally: &'a mut Tally,
+    found: Option<Occluder>,
+    test: PhantomData<T>,
+}
+
+impl<T: TriangleTest, L: Lanes> Visit for AnyVisitor<'_, T, L> {
+    #[inline(always)]
+    fn visit(&mut self, cell: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
+        let Self { triangles, ray, lanes, tally, found, .. } = self;
+        tally.cells += 1;
+        let opaque = triangles.opaque_count();
+        test_each::<T, L>(
+            triangles,
+            ray,
+            lanes,
+            ids,
+            tally,
+            |id| id < opaque,
+            |triangle| {
+                *found = Some(Occluder { triangle, cell });
+                ControlFlow::Break(())
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.ray.end
+    }
+}
+
+struct One<'a> {
+    ray: &'a Ray,
+    triangle: TriangleId,
+    tally: &'a mut Tally,
+}
+
+impl<W: Walk, T: TriangleTest> Job<W, T> for One<'_> {
+    type Answer = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, engine: &Engine<W, T>) -> bool {
+        let Self { ray, triangle, tally } = self;
+        if !admit(ray, tally) {
+            return false;
+        }
+        let lanes = RayLanes::<L>::new(ray);
+        let stop = |_| ControlFlow::Break(());
+        test_each::<T, L>(&engine.triangles, ray, &lanes, &[triangle], tally, |_| true, stop)
+            .is_break()
+    }
+}
+
+struct AllTransparent<'a> {
+    ray: &'a Ray,
+    found: &'a mut Vec<TriangleId>,
+    tally: &'a mut Tally,
+}
+
+impl<W: Walk, T: TriangleTest> Job<W, T> for AllTransparent<'_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, engine: &Engine<W, T>) {
+        if !admit(self.ray, self.tally) {
+            return;
+        }
+        self.tally.traversals += 1;
+        let lanes = RayLanes::<L>::new(self.ray);
+        let mut visitor = TransparentVisitor::<T, L> {
+            triangles: &engine.triangles,
+            job: self,
+            lanes,
+            test: PhantomData,
+        };
+        let ray = visitor.job.ray;
+        walk_any(&engine.walk, ray, &mut visitor);
+    }
+}
+
+struct TransparentVisitor<'a, T, L> {
+    triangles: &'a Triangles,
+    job: AllTransparent<'a>,
+    lanes: RayLanes<L>,
+    test: PhantomData<T>,
+}
+
+impl<T: TriangleTest, L: Lanes> Visit for TransparentVisitor<'_, T, L> {
+    #[inline(always)]
+    fn visit(&mut self, _: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
+        let AllTransparent { ray, found, tally } = &mut self.job;
+        tally.cells += 1;
+        let opaque = self.triangles.opaque_count();
+        let wanted = |id| id >= opaque;
+        test_each::<T, L>(self.triangles, ray, &self.lanes, ids, tally, wanted, |triangle| {
+            found.push(triangle);
+            ControlFlow::Continue(())
+        })
+    }
+
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.job.ray.end
+    }
+}
+
+struct NearestHit<'a> {
+    ray: &'a Ray,
+    tally: &'a mut Tally,
+}
+
+impl<W: Walk, T: TriangleTest> Job<W, T> for NearestHit<'_> {
+    type Answer = Option<Nearest>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, engine: &Engine<W, T>) -> Option<Nearest> {
+        let Self { ray, tally } = self;
+        if !admit(ray, tally) {
+            return None;
+        }
+        tally.traversals += 1;
+        let mut visitor = NearestVisitor::<T, L> {
+            triangles: &engine.triangles,
+            ray,
+            lanes: RayLanes::new(ray),
+            tally,
+            best: None,
+            test: PhantomData,
+        };
+        walk_any(&engine.walk, ray, &mut visitor);
+        visitor.best
+    }
+}
+
+struct NearestVisitor<'a, T, L> {
+    triangles: &'a Triangles,
+    ray: &'a Ray,
+    lanes: RayLanes<L>,
+    tally: &'a mut Tally,
+    best: Option<Nearest>,
+    test: PhantomData<T>,
+}
+
+impl<T: TriangleTest, L: Lanes> Visit for NearestVisitor<'_, T, L> {
+    #[inline(always)]
+    fn visit(&mut self, _: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
+        let Self { triangles, ray, lanes, tally, best, .. } = self;
+        tally.cells += 1;
+        test_each::<T, L>(
+            triangles,
+            ray,
+            lanes,
+            ids,
+            tally,
+            |_| true,
+            |triangle| {
+                if let Some(t) = distance(ray, &triangles.get(triangle)) {
+                    let nearer = best.is_none_or(|best| (t, triangle) < (best.t, best.triangle));
+                    if nearer {
+                        *best = Some(Nearest { triangle, t });
+                    }
+                }
+                ControlFlow::Continue(())
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.best.map_or(self.ray.end, |best| (best.t as f32).next_up())
+    }
+}

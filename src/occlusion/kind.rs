@@ -1,0 +1,176 @@
+//! From names to backends.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::{Brute, Bvh2, Cwbvh, Engine, Grid, GridOptions, Occlusion, Walk};
+use crate::exact::Exact;
+use crate::geometry::Triangles;
+use crate::geometry::intersect::{Moller, Pluecker, Watertight};
+use crate::geometry::lanes::Arithmetic;
+
+/// The engines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+pub enum Backend {
+    /// umbra's uniform grid.
+    Grid,
+    /// Intel Embree 4.
+    Embree,
+    /// obvhs' binary BVH.
+    Bvh2,
+    /// obvhs' compressed 8-wide BVH.
+    Cwbvh,
+    /// Every triangle, every time.
+    Brute,
+}
+
+impl Backend {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Grid, Self::Embree, Self::Bvh2, Self::Cwbvh, Self::Brute];
+
+    /// The test it uses where nothing else is asked for: the exact one where it can.
+    #[must_use]
+    pub fn default_test(self) -> Test {
+        if self == Self::Embree { Test::Pluecker } else { Test::Exact }
+    }
+
+    /// The name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Grid => "grid",
+            Self::Embree => "embree",
+            Self::Bvh2 => "bvh2",
+            Self::Cwbvh => "cwbvh",
+            Self::Brute => "brute",
+        }
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The triangle tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+pub enum Test {
+    /// Möller and Trumbore, as Embree's default mode has it.
+    Moller,
+    /// Plücker volumes, as Embree's robust mode has it.
+    Pluecker,
+    /// Woop, Benthin and Wald: watertight in f32.
+    Watertight,
+    /// Certified: the answer of exact arithmetic.
+    Exact,
+}
+
+impl Test {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Moller, Self::Pluecker, Self::Watertight, Self::Exact];
+
+    /// The name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Moller => "moller",
+            Self::Pluecker => "pluecker",
+            Self::Watertight => "watertight",
+            Self::Exact => "exact",
+        }
+    }
+}
+
+impl fmt::Display for Test {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// What to build besides the default.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BuildOptions {
+    /// How finely the grid divides the scene.
+    pub grid: GridOptions,
+    /// The arithmetic of the triangle tests; that of this CPU if none is named.
+    pub arithmetic: Option<Arithmetic>,
+    /// How Embree is used.
+    #[cfg(feature = "embree")]
+    pub embree: super::EmbreeOptions,
+}
+
+/// Why there is no backend.
+#[derive(Debug, thiserror::Error)]
+pub enum BackendError {
+    /// This umbra was built without the feature.
+    #[error(
+        "this umbra was built without Embree; build it with the default features, or choose another backend: grid, bvh2, cwbvh, brute"
+    )]
+    WithoutEmbree,
+    /// Embree cannot be used here.
+    #[cfg(feature = "embree")]
+    #[error(transparent)]
+    Embree(#[from] embree_ffi::Error),
+    /// Embree decides by its own arithmetic.
+    #[error(
+        "embree has no test '{0}': its own are pluecker (robust mode) and moller (default mode)"
+    )]
+    NotInEmbree(Test),
+}
+
+/// Builds a backend over the triangles.
+///
+/// # Errors
+/// If the backend is not to be had here.
+///
+/// # Panics
+/// Without triangles.
+pub fn build(
+    backend: Backend,
+    test: Test,
+    triangles: &Arc<Triangles>,
+    options: &BuildOptions,
+) -> Result<Box<dyn Occlusion>, BackendError> {
+    Ok(match backend {
+        Backend::Grid => engine(test, triangles, Grid::new(triangles, options.grid), options),
+        Backend::Bvh2 => engine(test, triangles, Bvh2::new(triangles), options),
+        Backend::Cwbvh => engine(test, triangles, Cwbvh::new(triangles), options),
+        Backend::Brute => engine(test, triangles, Brute::new(triangles), options),
+        Backend::Embree => embree(test, triangles, options)?,
+    })
+}
+
+fn embree(
+    test: Test,
+    triangles: &Arc<Triangles>,
+    options: &BuildOptions,
+) -> Result<Box<dyn Occlusion>, BackendError> {
+    let robust = match test {
+        Test::Pluecker => true,
+        Test::Moller => false,
+        other => return Err(BackendError::NotInEmbree(other)),
+    };
+    #[cfg(feature = "embree")]
+    return Ok(Box::new(super::Embree::new(triangles.clone(), robust, options.embree)?));
+    #[cfg(not(feature = "embree"))]
+    {
+        let _ = (robust, triangles, options);
+        Err(BackendError::WithoutEmbree)
+    }
+}
+
+fn engine<W: Walk>(
+    test: Test,
+    triangles: &Arc<Triangles>,
+    walk: W,
+    options: &BuildOptions,
+) -> Box<dyn Occlusion> {
+    let (triangles, arithmetic) = (triangles.clone(), options.arithmetic);
+    match test {
+        Test::Moller => Box::new(Engine::<W, Moller>::new(triangles, walk, arithmetic)),
+        Test::Pluecker => Box::new(Engine::<W, Pluecker>::new(triangles, walk, arithmetic)),
+        Test::Watertight => Box::new(Engine::<W, Watertight>::new(triangles, walk, arithmetic)),
+        Test::Exact => Box::new(Engine::<W, Exact>::new(triangles, walk, arithmetic)),
+    }
+}

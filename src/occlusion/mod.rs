@@ -1,0 +1,96 @@
+//! Who stands between two points: the backends, behind one trait.
+//!
+//! A backend is complete and immutable: it answers any query, and two threads may ask at once. Our
+//! own backends are *cullers* ([`Walk`]): they only say which triangles a ray might meet, and leave
+//! the decision to a [`TriangleTest`](crate::geometry::intersect::TriangleTest). As long as a culler
+//! is conservative, its answers are those of brute force, whatever the test; so `grid`, `bvh2`,
+//! `cwbvh` and `brute` agree bit for bit by construction.
+
+mod brute;
+mod bvh2;
+mod clip;
+mod culling_space;
+mod cwbvh;
+#[cfg(feature = "embree")]
+mod embree;
+mod engine;
+mod grid;
+mod kind;
+mod nearest;
+mod tally;
+mod walk;
+
+use std::any::Any;
+
+pub use brute::Brute;
+pub use bvh2::Bvh2;
+pub use cwbvh::Cwbvh;
+#[cfg(feature = "embree")]
+pub use embree::{Embree, EmbreeOptions, Isa, PacketWidth, Quality};
+pub use engine::Engine;
+pub use grid::{Grid, GridOptions};
+pub use kind::{Backend, BackendError, BuildOptions, Test, build};
+pub use nearest::Nearest;
+pub use tally::Tally;
+pub use walk::{Visit, Walk};
+
+use crate::geometry::{Ray, TriangleId};
+
+/// A run of a backend's [`order`](Occlusion::order): the triangles of a voxel, of a leaf, or a block
+/// of neighbours. It is what the paper's caches call "the voxel".
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Cell {
+    /// First place in the order.
+    pub start: u32,
+    /// One past the last place.
+    pub end: u32,
+}
+
+/// A triangle that blocks a ray, and the cell it was met in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Occluder {
+    /// The triangle.
+    pub triangle: TriangleId,
+    /// Its neighbourhood.
+    pub cell: Cell,
+}
+
+/// Answers occlusion queries about one set of triangles.
+pub trait Occlusion: Any + Send + Sync {
+    /// Any one opaque triangle that the ray meets.
+    fn occluder(&self, ray: &Ray, tally: &mut Tally) -> Option<Occluder>;
+
+    /// Whether any opaque triangle blocks the ray.
+    fn occluded(&self, ray: &Ray, tally: &mut Tally) -> bool {
+        self.occluder(ray, tally).is_some()
+    }
+
+    /// Answers many rays, which had better be alike: towards one light, from one part of the picture.
+    ///
+    /// # Panics
+    /// If the slices differ in length.
+    fn occluded_many(&self, rays: &[Ray], blocked: &mut [bool], tally: &mut Tally) {
+        assert_eq!(rays.len(), blocked.len(), "one answer a ray");
+        for (ray, blocked) in rays.iter().zip(blocked) {
+            *blocked = self.occluded(ray, tally);
+        }
+    }
+
+    /// The first opaque triangle of a cell that the ray meets.
+    fn occluder_in(&self, cell: Cell, ray: &Ray, tally: &mut Tally) -> Option<Occluder>;
+
+    /// Whether the ray meets this one triangle.
+    fn meets(&self, triangle: TriangleId, ray: &Ray, tally: &mut Tally) -> bool;
+
+    /// All transparent triangles that the ray meets, each once, in ascending order.
+    fn transparent(&self, ray: &Ray, found: &mut Vec<TriangleId>, tally: &mut Tally);
+
+    /// The triangle the ray meets first; of several at the same distance, the one with the least id.
+    fn nearest(&self, ray: &Ray, tally: &mut Tally) -> Option<Nearest>;
+
+    /// The triangles in an order that keeps each cell together; a triangle may recur.
+    fn order(&self) -> &[TriangleId];
+
+    /// Bytes held, triangles apart.
+    fn memory(&self) -> usize;
+}

@@ -1,0 +1,95 @@
+//! The Whitted ray tracer: what asks the shadow queries.
+//!
+//! Work is cut into units (bands of rows, or tiles) whose number and content do not depend on the
+//! number of threads. Each unit has a worker of its own, with fresh memories; so picture and counters
+//! are the same for any number of threads, bit for bit. Within a unit, rays are followed generation
+//! by generation, and the shadow queries of a generation are asked light by light.
+
+mod film;
+mod order;
+mod output;
+mod settings;
+mod shading;
+mod statistics;
+mod whitted;
+
+pub use film::{Film, ShadowMask};
+pub use order::Order;
+pub use output::{OutputError, Picture, write_picture, write_whole};
+pub use settings::{Settings, SettingsError};
+pub use statistics::{RayCounts, Statistics};
+pub use whitted::RecordedQuery;
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use rayon::prelude::*;
+
+use crate::occlusion::Occlusion;
+use crate::scene::Scene;
+use crate::shadow::Prepared;
+use whitted::Unit;
+
+/// What a render gives.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// The picture, linear radiance.
+    pub film: Film,
+    /// Which primary hits each light reaches, if asked for.
+    pub mask: Option<ShadowMask>,
+    /// All shadow queries, light by light within each generation of each unit, if asked for.
+    pub queries: Vec<RecordedQuery>,
+    /// Counts.
+    pub statistics: Statistics,
+}
+
+/// How far a render is; read by whoever shows it.
+#[derive(Debug, Default)]
+pub struct Progress {
+    /// Pixels finished.
+    pub pixels: AtomicU64,
+    /// Rays of all kinds so far.
+    pub rays: AtomicU64,
+}
+
+/// Renders a scene.
+///
+/// Runs in the current rayon pool; to choose the number of threads, install one.
+///
+/// # Errors
+/// If the settings make no picture.
+pub fn render(
+    scene: &Scene,
+    backend: &dyn Occlusion,
+    shadows: &dyn Prepared,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Rendered, SettingsError> {
+    settings.check()?;
+    let units = settings.order.units(settings.width, settings.height, settings.rows_per_unit);
+    let done: Vec<_> = units
+        .par_iter()
+        .map(|pixels| {
+            let unit = Unit::new(scene, backend, shadows, settings).run(pixels, progress);
+            progress.pixels.fetch_add(pixels.len() as u64, Relaxed);
+            unit
+        })
+        .collect();
+    let mut film = Film::new(settings.width, settings.height);
+    let mut mask =
+        settings.mask.then(|| ShadowMask::new(settings.width, settings.height, scene.lights.len()));
+    let mut statistics = Statistics::default();
+    let mut queries = Vec::new();
+    for (pixels, unit) in units.iter().zip(done) {
+        for (place, colour) in pixels.iter().zip(&unit.colours) {
+            film.set(*place, *colour);
+        }
+        if let Some(mask) = &mut mask {
+            for (place, seen) in pixels.iter().zip(unit.seen.chunks(scene.lights.len().max(1))) {
+                mask.set(*place, seen);
+            }
+        }
+        statistics += unit.statistics;
+        queries.extend(unit.queries);
+    }
+    Ok(Rendered { film, mask, queries, statistics })
+}

@@ -1,0 +1,143 @@
+//! Pictures on disk: PNG with 8 or 16 bits, OpenEXR.
+//!
+//! A picture is written to a temporary name beside its place and renamed, so that what was there
+//! before is kept until the new one is whole.
+
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use image::{DynamicImage, ImageBuffer, ImageFormat, Rgb};
+
+use super::Film;
+
+/// How a picture is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Picture {
+    /// sRGB, 8 bits.
+    Png8,
+    /// sRGB, 16 bits.
+    Png16,
+    /// Linear, 32-bit float, exposure not applied.
+    OpenExr,
+}
+
+/// Why a picture was not written.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The name does not say what it should be.
+    #[error("{path}: a picture's name must end in .png or .exr", path = path.display())]
+    Kind {
+        /// The name.
+        path: PathBuf,
+    },
+    /// The place cannot be written.
+    #[error("cannot write {path}: {reason}", path = path.display())]
+    Unwritable {
+        /// The place.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+impl Picture {
+    /// The kind that a file name asks for; `bits` (8 or 16) decides between the two of PNG.
+    ///
+    /// # Errors
+    /// If the name ends in neither `.png` nor `.exr`.
+    pub fn of(path: &Path, bits: u8) -> Result<Self, OutputError> {
+        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("png") if bits == 16 => Ok(Self::Png16),
+            Some("png") => Ok(Self::Png8),
+            Some("exr") => Ok(Self::OpenExr),
+            _ => Err(OutputError::Kind { path: path.to_owned() }),
+        }
+    }
+}
+
+/// Share of pixels that automatic exposure lets go white.
+const BURNT_OUT: f32 = 0.02;
+
+impl Film {
+    /// The exposure that makes all but the brightest pixels fit.
+    #[must_use]
+    pub fn automatic_exposure(&self) -> f32 {
+        let mut brightest: Vec<f32> = self
+            .pixels()
+            .iter()
+            .map(|p| p.max_element())
+            .filter(|v| v.is_finite() && *v > 0.0)
+            .collect();
+        if brightest.is_empty() {
+            return 1.0;
+        }
+        let rank = ((brightest.len() - 1) as f32 * (1.0 - BURNT_OUT)) as usize;
+        let (_, white, _) = brightest.select_nth_unstable_by(rank, f32::total_cmp);
+        white.recip()
+    }
+}
+
+/// The sRGB transfer function, from linear 0…1.
+fn encode(value: f32) -> f32 {
+    let value = value.clamp(0.0, 1.0);
+    if value <= 0.003_130_8 { 12.92 * value } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// Writes a picture; `exposure` is the factor from film to picture.
+///
+/// # Errors
+/// If the place cannot be written; what was there is untouched.
+pub fn write_picture(
+    film: &Film,
+    exposure: f32,
+    kind: Picture,
+    path: &Path,
+) -> Result<(), OutputError> {
+    let (width, height) = (film.width(), film.height());
+    let values = || film.pixels().iter().map(move |&p| p * exposure).flat_map(|p| p.to_array());
+    let whole = "film and picture are of one size";
+    let (image, format): (DynamicImage, _) = match kind {
+        Picture::Png8 => {
+            let bytes = values().map(|v| (encode(v) * 255.0).round() as u8).collect();
+            let buffer = ImageBuffer::<Rgb<u8>, _>::from_raw(width, height, bytes).expect(whole);
+            (buffer.into(), ImageFormat::Png)
+        }
+        Picture::Png16 => {
+            let words = values().map(|v| (encode(v) * 65535.0).round() as u16).collect();
+            let buffer = ImageBuffer::<Rgb<u16>, _>::from_raw(width, height, words).expect(whole);
+            (buffer.into(), ImageFormat::Png)
+        }
+        Picture::OpenExr => {
+            let linear = film.pixels().iter().flat_map(|p| p.to_array()).collect();
+            let buffer = ImageBuffer::<Rgb<f32>, _>::from_raw(width, height, linear).expect(whole);
+            (buffer.into(), ImageFormat::OpenExr)
+        }
+    };
+    let mut encoded = std::io::Cursor::new(Vec::new());
+    let unwritable = |reason: String| OutputError::Unwritable { path: path.to_owned(), reason };
+    image.write_to(&mut encoded, format).map_err(|e| unwritable(e.to_string()))?;
+    write_whole(path, encoded.get_ref()).map_err(|e| unwritable(e.to_string()))
+}
+
+/// Writes a file under a temporary name in the same folder, then renames it.
+///
+/// # Errors
+/// What the system said.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".umbra-");
+    // Temporary files are private by default; this one becomes an ordinary file, so the umask decides.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder.tempfile_in(folder)?;
+    let mut writer = BufWriter::new(file);
+    writer.write_all(bytes)?;
+    let file = writer.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|e| e.error)?;
+    Ok(())
+}

@@ -1,0 +1,298 @@
+//! Whitted's recursion, generation by generation.
+//!
+//! All rays of one generation are traced, then all their shadow queries asked light by light, then
+//! the next generation is spawned. What a sample gathers is added in one order, by generation, light
+//! and place in the ray tree, so the picture does not depend on how samples are batched.
+//!
+//! Whitted: An Improved Illumination Model for Shaded Display. Communications of the ACM 23(6), 1980.
+
+use std::sync::atomic::Ordering::Relaxed;
+
+use glam::{DVec2, Vec3};
+
+use super::film::Seen;
+use super::order::Place;
+use super::shading::{Surface, offset_of};
+use super::{Progress, Settings, Statistics};
+use crate::geometry::{Ray, TriangleId};
+use crate::occlusion::Occlusion;
+use crate::scene::Scene;
+use crate::shadow::{Answer, Attenuation, Path, Prepared, ShadowQuery, Shadows};
+
+/// Rays that carry less than this share of a pixel's light are not followed.
+const LEAST_THROUGHPUT: f32 = 1.0 / 1024.0;
+
+/// A shadow query of a render, and where it came from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordedQuery {
+    /// The query.
+    pub query: ShadowQuery,
+    /// The light it asks about.
+    pub light: u32,
+    /// The pixel: column and row.
+    pub pixel: Place,
+    /// Whether the render found it blocked.
+    pub blocked: bool,
+}
+
+/// What one unit of work gives.
+#[derive(Debug, Default)]
+pub(super) struct Done {
+    pub colours: Vec<Vec3>,
+    /// By pixel, then by light; empty if no mask was asked for.
+    pub seen: Vec<Seen>,
+    pub queries: Vec<RecordedQuery>,
+    pub statistics: Statistics,
+}
+
+/// Renders one unit, by one worker.
+pub(super) struct Unit<'a> {
+    scene: &'a Scene,
+    backend: &'a dyn Occlusion,
+    shadows: Box<dyn Shadows + 'a>,
+    settings: &'a Settings,
+    offset: f64,
+    attenuation: Attenuation,
+    /// Radiance that each sample of the batch has gathered.
+    gathered: Vec<Vec3>,
+    done: Done,
+    queries: Vec<(ShadowQuery, u32)>,
+    asked: Vec<ShadowQuery>,
+    answers: Vec<Answer>,
+}
+
+/// A ray that sees, on its way.
+struct Seeing {
+    ray: Ray,
+    /// Place of its sample in the batch.
+    sample: u32,
+    throughput: Vec3,
+    path: Path,
+}
+
+/// A point of a surface that it saw.
+struct Vertex {
+    surface: Surface,
+    triangle: TriangleId,
+    sample: u32,
+    throughput: Vec3,
+    path: Path,
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Reflected,
+    Refracted,
+}
+
+impl<'a> Unit<'a> {
+    pub(super) fn new(
+        scene: &'a Scene,
+        backend: &'a dyn Occlusion,
+        shadows: &'a dyn Prepared,
+        settings: &'a Settings,
+    ) -> Self {
+        Self {
+            scene,
+            backend,
+            shadows: shadows.worker(),
+            settings,
+            offset: offset_of(scene),
+            attenuation: Attenuation::default(),
+            gathered: Vec::new(),
+            done: Done::default(),
+            queries: Vec::new(),
+            asked: Vec::new(),
+            answers: Vec::new(),
+        }
+    }
+
+    pub(super) fn run(mut self, pixels: &[Place], progress: &Progress) -> Done {
+        let lights = self.scene.lights.len();
+        if self.settings.mask {
+            self.done.seen = vec![Seen::default(); pixels.len() * lights];
+        }
+        let samples = (self.settings.samples * self.settings.samples) as usize;
+        if self.settings.order.batches() {
+            self.batch(pixels, 0..pixels.len() * samples, progress);
+        } else {
+            let mut row = None;
+            for sample in 0..pixels.len() * samples {
+                let y = pixels[sample / samples].1;
+                if row.replace(y).is_some_and(|before| before != y) {
+                    self.shadows.begin_scanline();
+                }
+                self.batch(pixels, sample..sample + 1, progress);
+            }
+        }
+        self.done.statistics.shadows = self.shadows.tally();
+        self.done.statistics.transparent = self.attenuation.tally;
+        self.done
+    }
+
+    /// Renders some of the unit's samples together; they are numbered pixel by pixel.
+    fn batch(&mut self, pixels: &[Place], samples: std::ops::Range<usize>, progress: &Progress) {
+        let before = self.done.statistics.rays.total();
+        let a_pixel = (self.settings.samples * self.settings.samples) as usize;
+        self.gathered.clear();
+        self.gathered.resize(samples.len(), Vec3::ZERO);
+        let pixel_of = |sample: u32| (samples.start + sample as usize) / a_pixel;
+        let mut generation: Vec<Seeing> = samples
+            .clone()
+            .map(|index| Seeing {
+                ray: self.eye_ray(pixels[index / a_pixel], index % a_pixel),
+                sample: (index - samples.start) as u32,
+                throughput: Vec3::ONE,
+                path: Path::EYE,
+            })
+            .collect();
+        self.done.statistics.rays.primary += generation.len() as u64;
+        while !generation.is_empty() {
+            let vertices = self.see(&generation);
+            for light in 0..self.scene.lights.len() {
+                self.ask(light, &vertices, |sample| (pixel_of(sample), pixels[pixel_of(sample)]));
+            }
+            generation = self.spawn(&vertices);
+        }
+        // A pixel's samples are added in their order, which no batch cuts differently.
+        for (offset, gathered) in self.gathered.iter().enumerate() {
+            let pixel = pixel_of(offset as u32);
+            if pixel >= self.done.colours.len() {
+                self.done.colours.resize(pixel + 1, Vec3::ZERO);
+            }
+            self.done.colours[pixel] += *gathered / a_pixel as f32;
+        }
+        progress.rays.fetch_add(self.done.statistics.rays.total() - before, Relaxed);
+    }
+
+    fn eye_ray(&self, (x, y): Place, sample: usize) -> Ray {
+        let Settings { width, height, samples, .. } = *self.settings;
+        let n = samples as usize;
+        let within = DVec2::new((sample % n) as f64 + 0.5, (sample / n) as f64 + 0.5) / n as f64;
+        let size = DVec2::new(f64::from(width), f64::from(height));
+        let place = (DVec2::new(f64::from(x), f64::from(y)) + within) / size;
+        self.scene.camera.ray(place, size.x / size.y)
+    }
+
+    /// Finds what the rays of a generation see; adds what shines by itself, and the background.
+    fn see(&mut self, generation: &[Seeing]) -> Vec<Vertex> {
+        let mut vertices = Vec::with_capacity(generation.len());
+        for seeing in generation {
+            let gathered = &mut self.gathered[seeing.sample as usize];
+            let Some(hit) = self.backend.nearest(&seeing.ray, &mut self.done.statistics.nearest)
+            else {
+                *gathered += seeing.throughput * self.scene.background;
+                continue;
+            };
+            let material = self.scene.material(hit.triangle);
+            *gathered +=
+                seeing.throughput * (material.emission + self.scene.ambient * material.diffuse);
+            vertices.push(Vertex {
+                surface: Surface::new(self.scene, &seeing.ray, &hit, self.offset),
+                triangle: hit.triangle,
+                sample: seeing.sample,
+                throughput: seeing.throughput,
+                path: seeing.path,
+            });
+        }
+        vertices
+    }
+
+    /// Asks whether one light reaches the vertices, and adds its light where it does.
+    fn ask(&mut self, light: usize, vertices: &[Vertex], pixel: impl Fn(u32) -> (usize, Place)) {
+        let source = &self.scene.lights[light];
+        self.queries.clear();
+        for (index, vertex) in vertices.iter().enumerate() {
+            let material = self.scene.material(vertex.triangle);
+            if material.diffuse == Vec3::ZERO && material.highlight == Vec3::ZERO {
+                continue;
+            }
+            let lit = source.illuminate(vertex.surface.point);
+            if lit.is_some_and(|light| vertex.surface.faces(&light)) {
+                let ray = source.shadow_ray(vertex.surface.origin_above());
+                let query = ShadowQuery { ray, path: vertex.path, spawner: vertex.triangle };
+                self.queries.push((query, index as u32));
+            }
+        }
+        self.asked.clear();
+        self.asked.extend(self.queries.iter().map(|(query, _)| *query));
+        self.answers.clear();
+        self.answers.resize(self.asked.len(), Answer::default());
+        self.shadows.answer(light, &self.asked, &mut self.answers);
+        self.done.statistics.rays.shadow += self.asked.len() as u64;
+
+        let transparent = self.scene.has_transparent();
+        for (&(query, index), answer) in self.queries.iter().zip(&self.answers) {
+            let vertex = &vertices[index as usize];
+            let (pixel_index, place) = pixel(vertex.sample);
+            if self.settings.mask && vertex.path == Path::EYE {
+                let seen = &mut self.done.seen[pixel_index * self.scene.lights.len() + light];
+                seen.asked += 1;
+                seen.blocked += u16::from(answer.blocked);
+            }
+            if self.settings.record {
+                let light = light as u32;
+                let blocked = answer.blocked;
+                self.done.queries.push(RecordedQuery { query, light, pixel: place, blocked });
+            }
+            if answer.blocked {
+                continue;
+            }
+            let illumination =
+                source.illuminate(vertex.surface.point).expect("it was asked because it is lit");
+            let mut radiance =
+                vertex.surface.shade(self.scene.material(vertex.triangle), &illumination);
+            if transparent {
+                radiance *= self.attenuation.transmittance(self.scene, self.backend, &query.ray);
+            }
+            self.gathered[vertex.sample as usize] += vertex.throughput * radiance;
+        }
+    }
+
+    /// The next generation: mirrored and refracted rays.
+    fn spawn(&mut self, vertices: &[Vertex]) -> Vec<Seeing> {
+        let mut generation = Vec::new();
+        for vertex in vertices {
+            let material = self.scene.material(vertex.triangle);
+            if !material.is_specular() || vertex.path.level() >= self.settings.depth {
+                continue;
+            }
+            let surface = &vertex.surface;
+            let mut reflectance = surface.reflectance(material);
+            let mut refracted = None;
+            if material.is_transparent() {
+                match surface.refracted(material) {
+                    Some((direction, share)) => {
+                        reflectance += (Vec3::ONE - reflectance) * share;
+                        refracted = Some((direction, material.transmission * (1.0 - share)));
+                    }
+                    None => reflectance = Vec3::ONE,
+                }
+            }
+            let mut push = |kind: Kind, origin: Vec3, direction: Vec3, share: Vec3| {
+                let throughput = vertex.throughput * share;
+                if throughput.max_element() < LEAST_THROUGHPUT {
+                    return;
+                }
+                let rays = &mut self.done.statistics.rays;
+                let path = match kind {
+                    Kind::Reflected => {
+                        rays.reflected += 1;
+                        vertex.path.reflected()
+                    }
+                    Kind::Refracted => {
+                        rays.refracted += 1;
+                        vertex.path.refracted()
+                    }
+                };
+                let ray = Ray::towards(origin, direction);
+                generation.push(Seeing { ray, sample: vertex.sample, throughput, path });
+            };
+            push(Kind::Reflected, surface.origin_above(), surface.reflected(), reflectance);
+            if let Some((direction, share)) = refracted {
+                push(Kind::Refracted, surface.origin_below(), direction, share);
+            }
+        }
+        generation
+    }
+}

@@ -1,0 +1,59 @@
+//! How queries were answered, in counts.
+
+use serde::Serialize;
+
+use super::Outcome;
+use crate::occlusion::Tally;
+
+/// Counters of a worker; plain numbers, summed at the end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ShadowTally {
+    /// Queries asked.
+    pub queries: u64,
+    /// Queries blocked by an opaque triangle.
+    pub blocked: u64,
+    /// Queries for which a remembered triangle was tested.
+    pub object_tested: u64,
+    /// Those that it blocked.
+    pub object_hits: u64,
+    /// Queries for which a remembered cell was tested.
+    pub voxel_tested: u64,
+    /// Those that it blocked.
+    pub voxel_hits: u64,
+    /// Queries that a prepared structure proved lit.
+    pub verdict_lit: u64,
+    /// Queries that a prepared structure proved blocked.
+    pub verdict_blocked: u64,
+    /// What the backend did, tests of remembered triangles and cells included.
+    pub backend: Tally,
+}
+
+impl ShadowTally {
+    /// Counts one answer.
+    #[inline]
+    pub fn count(&mut self, blocked: bool, outcome: Outcome) {
+        self.queries += 1;
+        self.blocked += u64::from(blocked);
+        match outcome {
+            Outcome::TraversalLit | Outcome::TraversalBlocked => {}
+            Outcome::Object => self.object_hits += 1,
+            Outcome::Voxel => self.voxel_hits += 1,
+            Outcome::VerdictLit => self.verdict_lit += 1,
+            Outcome::VerdictBlocked => self.verdict_blocked += 1,
+        }
+    }
+}
+
+impl std::ops::AddAssign for ShadowTally {
+    fn add_assign(&mut self, other: Self) {
+        self.queries += other.queries;
+        self.blocked += other.blocked;
+        self.object_tested += other.object_tested;
+        self.object_hits += other.object_hits;
+        self.voxel_tested += other.voxel_tested;
+        self.voxel_hits += other.voxel_hits;
+        self.verdict_lit += other.verdict_lit;
+        self.verdict_blocked += other.verdict_blocked;
+        self.backend += other.backend;
+    }
+}

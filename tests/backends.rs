@@ -1,0 +1,209 @@
+//! Every backend answers like brute force, bit for bit, whatever the ray.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{Aim, Random, soup, sphere};
+use glam::Vec3;
+use umbra::geometry::lanes::Arithmetic;
+use umbra::geometry::{Ray, Triangle, Triangles};
+use umbra::occlusion::{Backend, BuildOptions, GridOptions, Occlusion, Tally, Test, build};
+
+const OWN: [Backend; 3] = [Backend::Grid, Backend::Bvh2, Backend::Cwbvh];
+
+fn meshes() -> Vec<(&'static str, Vec<Triangle>)> {
+    vec![
+        ("small triangles", soup(2000, 0.05, 1)),
+        ("large triangles", soup(300, 1.0, 2)),
+        ("sphere", sphere(Vec3::ZERO, 0.9, 24)),
+        ("one triangle", soup(1, 0.5, 3)),
+        (
+            "flat square",
+            vec![[Vec3::ZERO, Vec3::X, Vec3::Y], [Vec3::X + Vec3::Y, Vec3::X, Vec3::Y]],
+        ),
+    ]
+}
+
+fn backends(
+    triangles: &Arc<Triangles>,
+    test: Test,
+    options: &BuildOptions,
+) -> Vec<Box<dyn Occlusion>> {
+    OWN.iter().map(|&backend| build(backend, test, triangles, options).unwrap()).collect()
+}
+
+#[test]
+fn every_backend_equals_brute_force_for_every_kind_of_ray() {
+    for (name, mesh) in meshes() {
+        let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());
+        for test in Test::ALL {
+            let options = BuildOptions::default();
+            let brute = build(Backend::Brute, test, &triangles, &options).unwrap();
+            let others = backends(&triangles, test, &options);
+            for aim in Aim::ALL {
+                let mut random = Random(7);
+                let mut blocked = 0;
+                for i in 0..2000 {
+                    let ray = aim.ray(&mesh, &mut random);
+                    let tally = &mut Tally::default();
+                    let expected = brute.occluded(&ray, tally);
+                    blocked += u32::from(expected);
+                    let nearest = brute.nearest(&ray, tally);
+                    for (backend, other) in OWN.iter().zip(&others) {
+                        let what = format!("{backend} {test} {aim:?} on {name}, ray {i}: {ray:?}");
+                        assert_eq!(other.occluded(&ray, tally), expected, "{what}");
+                        assert_eq!(other.nearest(&ray, tally), nearest, "{what}");
+                    }
+                }
+                assert!(
+                    blocked > 0 || name == "flat square" || name == "one triangle",
+                    "{name} {aim:?}: nothing was blocked"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_grid_loses_nothing_at_any_resolution() {
+    let mesh = soup(500, 0.2, 4);
+    let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());
+    let brute =
+        build(Backend::Brute, Test::Pluecker, &triangles, &BuildOptions::default()).unwrap();
+    for resolution in [[1, 1, 1], [1, 1, 200], [3, 5, 7], [64, 64, 64], [128, 2, 128]] {
+        let options =
+            BuildOptions { grid: GridOptions::Resolution(resolution), ..Default::default() };
+        let grid = build(Backend::Grid, Test::Pluecker, &triangles, &options).unwrap();
+        for aim in Aim::ALL {
+            let mut random = Random(11);
+            for _ in 0..1000 {
+                let ray = aim.ray(&mesh, &mut random);
+                let tally = &mut Tally::default();
+                assert_eq!(
+                    grid.occluded(&ray, tally),
+                    brute.occluded(&ray, tally),
+                    "{resolution:?} {ray:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn scale_and_place_of_a_scene_do_not_matter() {
+    for (scale, offset) in [(1e-15f32, 0.0f32), (1e-6, 0.0), (1e9, 0.0), (1.0, 1e4), (1.0, -1e6)] {
+        let place = |point: Vec3| point * scale + Vec3::splat(offset);
+        let mesh: Vec<Triangle> = soup(400, 0.2, 5).into_iter().map(|t| t.map(place)).collect();
+        let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());
+        let options = BuildOptions::default();
+        let brute = build(Backend::Brute, Test::Pluecker, &triangles, &options).unwrap();
+        let others = backends(&triangles, Test::Pluecker, &options);
+        let mut random = Random(13);
+        for _ in 0..2000 {
+            let ray = Ray::between(place(random.in_cube(1.2)), place(random.in_cube(1.2)));
+            let tally = &mut Tally::default();
+            let expected = brute.occluded(&ray, tally);
+            for (backend, other) in OWN.iter().zip(&others) {
+                assert_eq!(
+                    other.occluded(&ray, tally),
+                    expected,
+                    "{backend} at scale {scale}, offset {offset}: {ray:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn wide_and_scalar_lanes_give_the_same_bits() {
+    use umbra::geometry::intersect::{Moller, Pluecker, TriangleTest, meets};
+    use umbra::geometry::lanes::Scalar;
+    fn compare<T: TriangleTest>(test: Test) {
+        let mesh = soup(64, 0.6, 6);
+        let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());
+        for arithmetic in Arithmetic::ALL.into_iter().filter(|a| a.is_available()) {
+            let options = BuildOptions { arithmetic: Some(arithmetic), ..Default::default() };
+            let brute = build(Backend::Brute, test, &triangles, &options).unwrap();
+            let mut random = Random(17);
+            for aim in Aim::ALL {
+                for _ in 0..200 {
+                    let ray = aim.ray(&mesh, &mut random);
+                    for (id, triangle) in mesh.iter().enumerate() {
+                        let twin = match arithmetic {
+                            Arithmetic::Sse => meets::<T, Scalar<false, false>>(&ray, triangle),
+                            Arithmetic::Avx2 => meets::<T, Scalar<true, false>>(&ray, triangle),
+                            Arithmetic::Avx512 => meets::<T, Scalar<true, true>>(&ray, triangle),
+                        };
+                        let wide = brute.meets(id as u32, &ray, &mut Tally::default());
+                        assert_eq!(wide, twin, "{test} {arithmetic:?} {ray:?} {triangle:?}");
+                    }
+                }
+            }
+        }
+    }
+    compare::<Moller>(Test::Moller);
+    compare::<Pluecker>(Test::Pluecker);
+}
+
+#[test]
+fn a_ray_that_is_not_finite_is_not_blocked_and_counted() {
+    let mesh = sphere(Vec3::ZERO, 1.0, 8);
+    let triangles = Arc::new(mesh.into_iter().collect::<Triangles>());
+    let good = Ray::towards(Vec3::ZERO, Vec3::X);
+    let bad = [
+        Ray { origin: Vec3::NAN, ..good },
+        Ray { direction: Vec3::new(f32::INFINITY, 0.0, 0.0), ..good },
+        Ray { end: f32::NAN, ..good },
+        Ray { end: 0.0, ..good },
+        Ray { end: -1.0, ..good },
+    ];
+    for backend in [Backend::Brute, Backend::Grid, Backend::Bvh2, Backend::Cwbvh] {
+        let occlusion =
+            build(backend, Test::Pluecker, &triangles, &BuildOptions::default()).unwrap();
+        let mut tally = Tally::default();
+        assert!(occlusion.occluded(&good, &mut tally));
+        assert!(bad.iter().all(|ray| !occlusion.occluded(ray, &mut tally)));
+        assert_eq!(tally.invalid_rays, bad.len() as u64);
+    }
+}
+
+#[test]
+fn a_ray_without_direction_meets_nothing() {
+    let triangles = Arc::new(soup(100, 1.0, 8).into_iter().collect::<Triangles>());
+    for backend in [Backend::Brute, Backend::Grid, Backend::Bvh2, Backend::Cwbvh] {
+        for test in Test::ALL {
+            let occlusion = build(backend, test, &triangles, &BuildOptions::default()).unwrap();
+            let point = Ray::between(Vec3::splat(0.1), Vec3::splat(0.1));
+            assert!(!occlusion.occluded(&point, &mut Tally::default()), "{backend} {test}");
+        }
+    }
+}
+
+#[test]
+fn transparent_triangles_are_found_once_each_and_block_nothing() {
+    let mesh = soup(600, 0.4, 9);
+    let (opaque, transparent) = mesh.split_at(100);
+    let triangles = Arc::new(Triangles::new(opaque.to_vec(), transparent.to_vec()));
+    let only_opaque = Arc::new(Triangles::new(opaque.to_vec(), []));
+    let options = BuildOptions::default();
+    let brute = build(Backend::Brute, Test::Pluecker, &triangles, &options).unwrap();
+    let reference = build(Backend::Brute, Test::Pluecker, &only_opaque, &options).unwrap();
+    let others = backends(&triangles, Test::Pluecker, &options);
+    let mut random = Random(19);
+    let mut most = 0;
+    for _ in 0..2000 {
+        let ray = Aim::Random.ray(&mesh, &mut random);
+        let tally = &mut Tally::default();
+        let (mut expected, mut found) = (Vec::new(), Vec::new());
+        brute.transparent(&ray, &mut expected, tally);
+        assert!(expected.windows(2).all(|pair| pair[0] < pair[1]));
+        most = most.max(expected.len());
+        for other in &others {
+            other.transparent(&ray, &mut found, tally);
+            assert_eq!(found, expected);
+            assert_eq!(other.occluded(&ray, tally), reference.occluded(&ray, tally));
+        }
+    }
+    assert!(most > 5, "some rays pass many transparent triangles");
+}
