@@ -15,9 +15,10 @@ pub(super) struct EngineOptions {
     /// The engine that answers occlusion queries
     #[arg(long, value_enum, default_value_t = Backend::Grid)]
     pub backend: Backend,
-    /// The triangle test (all backends but Embree, which has its own)
-    #[arg(long, value_enum, default_value_t = Test::Pluecker)]
-    pub test: Test,
+    /// The triangle test: exact, unless the engine is embree, which has pluecker (its robust mode, the
+    /// default) and moller (its default mode)
+    #[arg(long, value_enum)]
+    test: Option<Test>,
     /// Voxels of the grid along x, y and z, instead of a choice by the number of triangles
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_resolution)]
     pub grid: Option<[u32; 3]>,
@@ -36,12 +37,17 @@ fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
 }
 
 impl EngineOptions {
+    /// The test that was asked for, or the backend's own choice.
+    pub fn test(&self) -> Test {
+        self.test.unwrap_or_else(|| self.backend.default_test())
+    }
+
     /// Builds the backend; also says how many seconds that took.
     pub fn build(&self, scene: &Scene) -> Result<(Box<dyn Occlusion>, f64), Failure> {
         let grid = self.grid.map_or_else(GridOptions::default, GridOptions::Resolution);
         let options = BuildOptions { grid, ..BuildOptions::default() };
         let start = Instant::now();
-        let backend = build(self.backend, self.test, &scene.triangles, &options)?;
+        let backend = build(self.backend, self.test(), &scene.triangles, &options)?;
         Ok((backend, start.elapsed().as_secs_f64()))
     }
 
