@@ -6,8 +6,8 @@ use std::time::Instant;
 use clap::Args;
 use serde::Serialize;
 
-use super::Failure;
-use super::options::{EngineOptions, check_writable, load_scene, write_json};
+use super::failure::{Failure, say};
+use super::options::{EngineOptions, check_outputs, load_scene, write_json};
 use super::progress::with_bar;
 use crate::render::{
     Order, Picture, Progress, Rendered, Settings, Statistics, render, write_picture,
@@ -104,10 +104,10 @@ impl Render {
         if self.exposure.is_some_and(|e| !(e.is_finite() && e > 0.0)) {
             return Err(Failure::Input("--exposure: give a number above 0".to_owned()));
         }
-        check_writable(&self.output)?;
-        if let Some(stats) = &self.stats {
-            check_writable(stats)?;
-        }
+        let mask = self.aov.then(|| beside(&self.output, "mask"));
+        let outputs = [Some(&self.output), mask.as_ref(), self.stats.as_ref()];
+        let outputs: Vec<_> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
+        check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = self.engine.pool()?;
         pool.install(|| self.render(kind, &settings))
     }
@@ -133,7 +133,7 @@ impl Render {
             write_picture(&mask.picture(), 1.0, Picture::Png8, &beside(&self.output, "mask"))?;
         }
         let rays = statistics.rays;
-        eprintln!(
+        say!(
             "{}: {} triangles, {} lights, {} {} {}; {} rays ({} to lights, {} of them blocked) in {:.2} s: {:.2} million a second; loaded in {:.2} s, built in {:.2} s",
             scene.name,
             scene.triangles.len(),
