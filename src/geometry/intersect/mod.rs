@@ -11,7 +11,7 @@ pub use moller::Moller;
 pub use pluecker::Pluecker;
 pub use watertight::{Shear, Watertight};
 
-use super::lanes::{Lanes, Vector};
+use super::lanes::{Lanes, Vector, splat};
 use super::{Ray, Triangle};
 
 /// What a test says of several triangles at once, a bit a lane.
@@ -41,8 +41,8 @@ impl<L: Lanes> RayLanes<L> {
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         Self {
-            origin: ray.origin.to_array().map(L::splat),
-            direction: ray.direction.to_array().map(L::splat),
+            origin: splat(ray.origin),
+            direction: splat(ray.direction),
             end: L::splat(ray.end),
             shear: Shear::new(ray),
         }

@@ -131,7 +131,7 @@ impl Grid {
 
 impl Walk for Grid {
     #[inline(always)]
-    fn walk<V: Visit>(&self, ray: &Ray, visitor: &mut V) {
+    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
         walk::walk(self, ray, visitor);
     }
 

@@ -10,7 +10,7 @@ use super::{Grid, Visit};
 use crate::geometry::Ray;
 
 #[inline(always)]
-pub(super) fn walk<V: Visit>(grid: &Grid, ray: &Ray, visitor: &mut V) {
+pub(super) fn walk<V: Visit + ?Sized>(grid: &Grid, ray: &Ray, visitor: &mut V) {
     let (enter, leave) = match clip(ray, grid.min, grid.max) {
         Clip::Outside => return,
         Clip::Everything => return visit_all(&grid.order, 8, visitor),

@@ -32,18 +32,29 @@ struct Cut {
 }
 
 impl Cut {
-    /// The cut for a multiple of the paper's triangles. A square has two triangles at least, so
-    /// below a quarter there are fewer squares in a smaller box instead.
+    /// The cut nearest to a multiple of the paper's triangles. A square has two triangles at least,
+    /// so below a quarter there are fewer squares in a smaller box instead.
     fn at(tessellation: f64) -> Self {
+        let nearest = |wanted: f64, candidates: &mut dyn Iterator<Item = (u64, u64)>| {
+            candidates
+                .min_by(|a, b| {
+                    let missed = |made: u64| (made as f64 - wanted).abs();
+                    missed(a.1).total_cmp(&missed(b.1))
+                })
+                .map_or(1, |candidate| candidate.0)
+        };
         let cells = 0.5 * TRIANGLES * tessellation;
         if cells < 1.0 {
-            let side = (1..SIDE).take_while(|side| {
-                ((side * side * side) as f64) <= cells * (SIDE * SIDE * SIDE) as f64
-            });
-            return Self { side: side.last().unwrap_or(1), cells: (1, 1) };
+            let squares = cells * SIDE.pow(3) as f64;
+            let side = nearest(squares, &mut (1..=SIDE).map(|side| (side, side.pow(3))));
+            return Self { side, cells: (1, 1) };
         }
-        let across = cells.sqrt().round().max(1.0);
-        Self { side: SIDE, cells: (across as u64, (cells / across).round().max(1.0) as u64) }
+        // As square as possible, but not at the cost of the number.
+        let square = cells.sqrt() as u64;
+        let along = |across: u64| (cells / across as f64).round() as u64;
+        let tried = (square.div_ceil(2)..=square).rev();
+        let across = nearest(cells, &mut tried.map(|across| (across, across * along(across))));
+        Self { side: SIDE, cells: (across, along(across)) }
     }
 
     fn triangles(self) -> u64 {

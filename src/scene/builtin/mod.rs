@@ -11,7 +11,7 @@ mod memory;
 mod model;
 mod random;
 
-use model::{MaterialId, Model};
+use model::Model;
 use random::Random;
 
 use super::{Draft, SceneError};
