@@ -20,9 +20,9 @@ use ::gltf::json::{
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::{
-    Camera, Draft, DraftTriangle, Light, SceneError, Surroundings,
+    Camera, Draft, DraftTriangle, Light, SceneError,
     load::{empty_draft, malformed, read_file},
-    material::from_extras,
+    material::{Surroundings, from_extras},
     placement::Placement,
 };
 use container::Container;
