@@ -124,10 +124,13 @@ fn unknown_names_come_with_the_known_ones() {
     render_refused("--test maybe", &["'maybe'", "moller, pluecker, watertight, exact"]);
     render_refused("--order random", &["'random'", "scanline", "tiles"]);
     render_refused("--shadows none", &["'none'", "trace"]);
-    render_refused("--backend embree --test exact", &["embree", "pluecker", "moller"]);
+    let line = "render triangle.obj -o new.png --backend embree --test exact";
+    assert_refusal(&run(workplace().path(), line), &["embree", "pluecker", "moller"]);
     render_refused("--colour red", &["'--colour'"]);
     let folder = workplace();
     refused(folder.path(), "draw triangle.obj", &["'draw'"]);
+    refused(folder.path(), "scene teapot -o a.obj", &["'teapot'", "chair-room"]);
+    refused(folder.path(), "scene drum -o a.obj --tessellation 200", &["200", "0.01 and 100"]);
     refused(folder.path(), "render triangle.obj", &["--output"]);
     refused(folder.path(), "query triangle.obj -o out.csv", &["--rays"]);
 }
@@ -162,6 +165,9 @@ fn outputs_that_cannot_be() {
     refused(folder.path(), "render triangle.obj -o out", &["out", ".png or .exr"]);
     let line = "render triangle.obj -o a.png --aov --stats a.mask.png";
     refused(folder.path(), line, &["a.mask.png", "another name"]);
+    refused(folder.path(), "scene drum -o drum.stl", &["drum.stl", ".obj or .glb"]);
+    refused(folder.path(), "scene drum -o missing/drum.glb", &["missing", "make it first"]);
+    refused(folder.path(), "scene drum -o a.obj --stats a.mtl", &["a.mtl", "another name"]);
     let line = "query triangle.obj --rays rays.csv -o rays.csv";
     refused(folder.path(), line, &["rays.csv", "another name"]);
 }
@@ -260,18 +266,18 @@ fn files_and_folders_without_permission() {
     allow("out.csv", 0o444);
     let program = folder.path().join("umbra");
     fs::copy(env!("CARGO_BIN_EXE_umbra"), &program).unwrap();
+    fs::create_dir(folder.path().join("open")).unwrap();
+    allow("open", 0o777);
     allow("", 0o555);
     let bits_bind = fs::File::open(folder.path().join("secret.obj")).is_err();
     for (line, told) in [
-        ("render secret.obj -o /dev/null", ".png or .exr"),
+        ("render secret.obj -o open/a.png", "cannot read secret.obj: Permission denied"),
+        ("query secret.obj --rays rays.csv -o open/a", "cannot read secret.obj: Permission denied"),
         (
-            "query secret.obj --rays rays.csv -o /dev/null",
+            "query triangle.obj --rays secret.obj -o open/a",
             "cannot read secret.obj: Permission denied",
         ),
-        (
-            "query triangle.obj --rays secret.obj -o /dev/null",
-            "cannot read secret.obj: Permission denied",
-        ),
+        ("scene drum -o drum.glb", "cannot write drum.glb: Permission denied"),
         ("render triangle.obj -o new.png", "cannot write new.png: Permission denied"),
         (
             "query triangle.obj --rays rays.csv -o new.csv",
@@ -295,6 +301,23 @@ fn files_and_folders_without_permission() {
 }
 
 #[test]
+fn a_built_in_scene_becomes_a_file_that_is_the_same_scene() {
+    use umbra::scene::{builtin::draft_at, load};
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["chair.obj", "chair.glb"] {
+        let line = format!("scene chair-room -o {name} --tessellation 0.1 --stats stats.json");
+        let output = run(folder.path(), &line);
+        assert!(output.status.success(), "{}", said(&output));
+        let written = load(folder.path().join(name).to_str().unwrap()).unwrap();
+        let scene = draft_at("chair-room", 0.1).unwrap().finish().unwrap();
+        assert!(written.triangles.corners() == scene.triangles.corners());
+        let stats = fs::read_to_string(folder.path().join("stats.json")).unwrap();
+        let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
+        assert_eq!(stats["triangles"], scene.triangles.len());
+    }
+}
+
+#[test]
 fn help_and_version() {
     let folder = workplace();
     let output = run(folder.path(), "");
@@ -304,6 +327,7 @@ fn help_and_version() {
         ("--help", "Usage: umbra"),
         ("render --help", "Examples:"),
         ("query --help", "Examples:"),
+        ("scene --help", "Examples:"),
         ("--version", env!("CARGO_PKG_VERSION")),
     ] {
         let output = run(folder.path(), line);

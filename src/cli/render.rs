@@ -15,8 +15,16 @@ use crate::render::{
 use crate::scene::Dropped;
 use crate::shadow::{Method, prepare};
 
+const DETAILS: &str = "\
+A scene without camera or lights gets sensible ones, and the command says so.
+
+Examples:
+  umbra render chair-room -o room.png --size 1280x972 --samples 3
+  umbra render sponza.glb -o sponza.exr --backend cwbvh --aov --stats sponza.json";
+
 /// Renders a picture of a scene
 #[derive(Args)]
+#[command(after_help = DETAILS)]
 pub(super) struct Render {
     /// A built-in scene, or an .obj, .glb, .gltf or .toml file
     scene: String,
