@@ -1,6 +1,8 @@
 //! Shared by the tests: random numbers, meshes, rays.
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
+pub mod command;
+
 use glam::Vec3;
 use umbra::geometry::{Ray, Triangle};
 
