@@ -25,6 +25,9 @@ pub(super) struct EngineOptions {
     /// Voxels of the grid along x, y and z, instead of a choice by the number of triangles
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_resolution)]
     pub grid: Option<[u32; 3]>,
+    /// A plain uniform grid: crowded voxels are not divided
+    #[arg(long)]
+    pub uniform: bool,
     /// Threads; all processors if not given
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
@@ -47,7 +50,7 @@ impl EngineOptions {
 
     /// Builds the backend; also says how many seconds that took.
     pub fn build(&self, scene: &Scene) -> Result<(Box<dyn Occlusion>, f64), Failure> {
-        let grid = self.grid.map_or_else(GridOptions::default, GridOptions::Resolution);
+        let grid = GridOptions { resolution: self.grid, nested: !self.uniform };
         let options = BuildOptions { grid, ..BuildOptions::default() };
         let start = Instant::now();
         let backend = with_word(&format!("building {}", self.backend), || {

@@ -21,7 +21,7 @@ use glam::{DAffine3, DVec3, Vec3};
 
 use super::{
     Camera, Draft, DraftTriangle, Light, SceneError,
-    load::{empty_draft, malformed, read_file},
+    load::{check_memory, empty_draft, malformed, read_file},
     material::{Surroundings, from_extras},
     placement::Placement,
 };
@@ -68,7 +68,9 @@ impl Reader<'_> {
             (None, []) => return Err("the file has no scene".to_owned()),
         };
         self.read_extras(scene);
-        self.draft.triangles.reserve(counts.below(&scene.nodes) as usize);
+        let count = counts.below(&scene.nodes);
+        check_memory(count)?;
+        self.draft.triangles.reserve(count as usize);
         let mut waiting: Vec<(usize, DAffine3)> =
             scene.nodes.iter().rev().map(|n| (n.value(), DAffine3::IDENTITY)).collect();
         while let Some((index, parent)) = waiting.pop() {
