@@ -36,7 +36,8 @@ do not block.
 Coordinates are those of the scene's file. Where umbra moves a scene that is far from the origin, it
 moves the rays by as much, in f64; then they are rounded to f32, once. A row with NaN, infinity or a
 number beyond f32 is answered 0; how many there were is said at the end. A line that is not six
-numbers ends the command: it says which, and writes nothing.
+numbers ends the command: it says which, and no file is written (standard output may have had answers
+to lines before it).
 
 Examples:
   umbra query chair-room --rays rays.csv -o blocked.csv
