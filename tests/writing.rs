@@ -140,6 +140,15 @@ fn real_scenes_come_back_bit_for_bit() {
 }
 
 #[test]
+fn built_in_scenes_come_back_bit_for_bit() {
+    for name in umbra::scene::builtin::NAMES {
+        let scene = load(name).expect("a built-in scene");
+        assert_same_geometry(&scene, &there_and_back(&scene, "back.glb"));
+        assert_same_geometry(&scene, &there_and_back(&scene, "back.obj"));
+    }
+}
+
+#[test]
 fn nothing_is_left_where_nothing_can_be_written() {
     let folder = TempDir::new().expect("a temporary folder");
     let scene = varied();

@@ -5,9 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use glam::Vec3A;
-
-use super::{Draft, DraftTriangle, Scene, SceneError, builtin, gltf, obj, toml};
+use super::{Draft, Scene, SceneError, builtin, gltf, obj, toml};
 
 /// Kinds of files that [`load`] reads, for messages.
 const READABLE: &str = ".obj, .glb, .gltf and .toml";
@@ -26,8 +24,8 @@ pub fn load(name_or_path: &str) -> Result<Scene, SceneError> {
 /// # Errors
 /// What is wrong with the name or the file, in one line.
 pub fn draft(name_or_path: &str) -> Result<Draft, SceneError> {
-    if let Some(draft) = builtin::draft(name_or_path) {
-        return Ok(draft);
+    if builtin::NAMES.contains(&name_or_path) {
+        return builtin::draft_at(name_or_path, 1.0);
     }
     let path = Path::new(name_or_path);
     match extension(path).as_str() {
@@ -65,31 +63,6 @@ pub(super) fn malformed(path: &Path, problem: impl Into<String>) -> SceneError {
 /// A draft that is named after its file, with nothing in it.
 pub(super) fn empty_draft(path: &Path) -> Draft {
     Draft { name: path.display().to_string(), ..Draft::default() }
-}
-
-/// Refuses more triangles than a 32-bit index or the free memory of this machine holds.
-pub(super) fn check_memory(triangles: u64) -> Result<(), String> {
-    if triangles > u64::from(u32::MAX) {
-        return Err(format!("{triangles} triangles are too many; umbra holds {}", u32::MAX));
-    }
-    // In the draft and in the scene, which are there together for a while.
-    const EACH: u64 = (size_of::<DraftTriangle>() + size_of::<[[Vec3A; 3]; 2]>()) as u64;
-    let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
-    match free_memory() {
-        Some(free) if triangles * EACH > free => Err(format!(
-            "{triangles} triangles need about {:.1} GiB of memory; {:.1} GiB are free",
-            gib(triangles * EACH),
-            gib(free)
-        )),
-        _ => Ok(()),
-    }
-}
-
-/// Free memory in bytes, where the system says it.
-fn free_memory() -> Option<u64> {
-    let text = fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
 }
 
 fn extension(path: &Path) -> String {

@@ -12,6 +12,7 @@ mod gltf;
 mod light;
 mod load;
 mod material;
+mod memory;
 mod mtl;
 mod obj;
 mod placement;

@@ -204,9 +204,7 @@ fn add_mesh(
             }
             read_mesh(&file)?
         }
-        (None, Some(name), None, None) => builtin::draft(name).ok_or_else(|| {
-            SceneError::Unknown { name: name.clone(), known: builtin::NAMES.join(", ") }
-        })?,
+        (None, Some(name), None, None) => builtin::draft_at(name, 1.0)?,
         (None, None, Some(quads), None) => {
             inline(quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]))
         }

@@ -96,6 +96,22 @@ fn meshes_that_cannot_be_had_are_named() {
 }
 
 #[test]
+fn built_in_scenes_can_be_placed() {
+    let files = Files::new();
+    files.write("a.toml", "[[mesh]]\nbuiltin = \"jittered-sparse\"\n");
+    let scene = files.load("a.toml").expect("a sound file");
+    assert!(
+        scene
+            .notes
+            .iter()
+            .any(|note| note == "jittered-sparse: its lights and camera are left out")
+    );
+    files.write("b.toml", "[[mesh]]\nbuiltin = \"teapot\"\n");
+    let message = files.load("b.toml").expect_err("there is none").to_string();
+    assert!(message.contains("'teapot'; built-in scenes: jittered-sparse"), "{message}");
+}
+
+#[test]
 fn faults_in_a_mesh_are_counted() {
     let files = Files::new();
     files.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n");

@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::{Random, memory};
+use super::{Random, check_memory};
 use crate::geometry::surface::cosine_and_sine;
 use crate::scene::{Camera, Draft, DraftTriangle, Light, Material, SceneError};
 
@@ -73,7 +73,7 @@ pub(super) fn triangle_count(tessellation: f64) -> u64 {
 /// The scene with squares of the given edge; the same jitter for every edge.
 pub(super) fn draft(name: &str, edge: f64, tessellation: f64) -> Result<Draft, SceneError> {
     let cut = Cut::at(tessellation);
-    memory::check(name, cut.triangles())?;
+    check_memory(name, cut.triangles())?;
     let mut draft = Draft {
         name: name.to_owned(),
         materials: materials(),

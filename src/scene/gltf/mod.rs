@@ -21,8 +21,9 @@ use glam::{DAffine3, DVec3, Vec3};
 
 use super::{
     Camera, Draft, DraftTriangle, Light, SceneError,
-    load::{check_memory, empty_draft, malformed, read_file},
+    load::{empty_draft, malformed, read_file},
     material::{Surroundings, from_extras},
+    memory,
     placement::Placement,
 };
 use container::Container;
@@ -69,7 +70,7 @@ impl Reader<'_> {
         };
         self.read_extras(scene);
         let count = counts.below(&scene.nodes);
-        check_memory(count)?;
+        memory::check(count)?;
         self.draft.triangles.reserve(count as usize);
         let mut waiting: Vec<(usize, DAffine3)> =
             scene.nodes.iter().rev().map(|n| (n.value(), DAffine3::IDENTITY)).collect();
