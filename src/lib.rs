@@ -2,7 +2,8 @@
 //! # Modules
 //!
 //! One direction of dependence, ground floor first: [`geometry`], [`exact`], [`scene`], [`occlusion`],
-//! [`shadow`], [`render`], [`cli`].
+//! [`shadow`], [`render`], [`cli`]; beside
+//! them [`whole_file`].
 
 pub mod cli;
 pub mod exact;
@@ -11,3 +12,4 @@ pub mod occlusion;
 pub mod render;
 pub mod scene;
 pub mod shadow;
+pub mod whole_file;

@@ -9,8 +9,8 @@ use clap::Args;
 use super::failure::{Failure, say};
 use super::progress::with_word;
 use crate::occlusion::{Backend, BuildOptions, GridOptions, Occlusion, Test, build};
-use crate::render::{folder_of, write_whole};
 use crate::scene::Scene;
+use crate::whole_file::{folder_of, write_whole};
 
 /// Which engine answers.
 #[derive(Args)]

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageBuffer, ImageFormat, Rgb};
 
-use super::{Film, write_whole};
+use super::Film;
+use crate::whole_file::write_whole;
 
 /// How a picture is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

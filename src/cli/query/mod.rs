@@ -19,7 +19,7 @@ use super::options::{EngineOptions, check_outputs, load_scene, write_json};
 use super::progress::with_rate;
 use crate::geometry::Ray;
 use crate::occlusion::{Occlusion, Tally};
-use crate::render::WholeFile;
+use crate::whole_file::WholeFile;
 use csv::BadLine;
 use rows::{Format, Rows};
 

@@ -4,16 +4,12 @@
 mod glb;
 mod obj;
 
-use std::{
-    fs::File,
-    io::{self, BufWriter, Write},
-    ops::Range,
-    path::Path,
-};
+use std::{io, ops::Range, path::Path};
 
 use glam::Vec3;
 
 use super::{Scene, SceneError};
+use crate::whole_file::WholeFile;
 pub use glb::write_glb;
 pub use obj::write_obj;
 
@@ -37,20 +33,12 @@ fn unwritable(path: &Path) -> impl Fn(io::Error) -> SceneError {
 /// Writes a file under another name beside it, and renames it once it is whole.
 fn write_whole(
     path: &Path,
-    content: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+    content: impl FnOnce(&mut WholeFile) -> io::Result<()>,
 ) -> Result<(), SceneError> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let write = || {
-        let file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
-        let mut writer = BufWriter::new(file.as_file());
-        content(&mut writer)?;
-        writer.flush()?;
-        drop(writer);
-        file.persist(path).map_err(|error| error.error)?;
-        Ok(())
+        let mut file = WholeFile::create(path)?;
+        content(&mut file)?;
+        file.finish()
     };
     write().map_err(unwritable(path))
 }
