@@ -70,10 +70,9 @@ fn tessellation_is_a_factor_on_the_triangles() {
 #[test]
 fn both_jittered_scenes_have_the_same_jitter() {
     let [sparse, dense] = ["jittered-sparse", "jittered-dense"].map(|name| draft(name).unwrap());
-    for (small, large) in sparse.triangles.iter().zip(&dense.triangles).step_by(8).take(68_921) {
-        // Both first corners lie on the ray from the square's centre to its first corner.
+    for (small, large) in sparse.triangles.iter().zip(&dense.triangles) {
         let [a, b] = [small, large].map(|t| (t.corners[1] - t.corners[0]).normalize());
-        assert!((a - b).length() < 1e-9);
+        assert!((a - b).length() < 1e-9, "a triangle is turned differently");
     }
 }
 

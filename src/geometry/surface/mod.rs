@@ -28,8 +28,8 @@ pub trait Surface {
     /// The unit normal at (u, v), on the side of ∂u × ∂v.
     fn normal(&self, u: f64, v: f64) -> DVec3;
 
-    /// Bounds of the second derivatives, which may jump but not the first ones; the
-    /// tessellator takes its resolution.
+    /// Bounds of the second derivatives, from which the tessellator takes its resolution. They may
+    /// jump from piece to piece; the first derivatives may not.
     fn second_derivatives(&self) -> SecondDerivatives;
 
     /// Which of its edges are one.

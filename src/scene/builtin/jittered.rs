@@ -170,7 +170,7 @@ fn materials() -> Vec<Material> {
 /// camera sees, lights in front of it nearly all; this range gives the paper's ratio of rays between
 /// the sparse and the dense scene.
 fn lights(draft: &mut Draft, half: f64, random: &mut Random) {
-    let intensity = Vec3::splat((0.36 * half * half) as f32);
+    let intensity = Vec3::splat((0.26 * half * half) as f32);
     for light in 0..LIGHTS {
         let [x, y] = [0; 2].map(|_| random.uniform());
         let z = (light as f64 + 0.5) / LIGHTS as f64;

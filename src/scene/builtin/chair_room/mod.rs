@@ -47,7 +47,7 @@ fn light(model: &mut Model, materials: &Materials) {
         let place = turned(0.0, DVec3::new(x, room::HEIGHT - 0.045, z));
         model.lathe(&[(&disc, 6)], 25, materials.lamp, place);
         let position = DVec3::new(x, room::HEIGHT - 0.12, z);
-        model.draft.lights.push(Light::Point { position, intensity: Vec3::new(7.4, 6.7, 5.8) });
+        model.draft.lights.push(Light::Point { position, intensity: Vec3::new(7.8, 7.0, 6.0) });
     }
 }
 
@@ -58,7 +58,7 @@ fn look(model: &mut Model) {
         DVec3::Y,
         0.66,
     ));
-    model.draft.ambient = Vec3::new(0.13, 0.125, 0.12);
+    model.draft.ambient = Vec3::new(0.10, 0.10, 0.10);
     model.draft.exposure = Some(1.0);
 }
 
@@ -109,7 +109,7 @@ impl Materials {
                 model.material("light tile", glossy(0.62, 0.56, 0.47, 0.10)),
                 model.material("dark tile", glossy(0.23, 0.20, 0.18, 0.10)),
             ],
-            wall: model.material("wall", matt(0.60, 0.52, 0.42)),
+            wall: model.material("wall", matt(0.60, 0.47, 0.36)),
             panelling: model.material("panelling", matt(0.78, 0.74, 0.66)),
             ceiling: model.material("ceiling", matt(0.85, 0.83, 0.79)),
             sky: model.material("sky", shining(0.62, 0.78, 0.98)),
