@@ -12,7 +12,7 @@ use super::progress::with_bar;
 use crate::render::{
     Order, Picture, Progress, Rendered, Settings, Statistics, render, write_picture,
 };
-use crate::scene::Dropped;
+use crate::scene::{Dropped, builtin};
 use crate::shadow::{Method, prepare};
 
 const DETAILS: &str = "\
@@ -37,8 +37,10 @@ pub(super) struct Render {
     #[arg(long, value_enum, default_value_t)]
     shadows: Method,
     /// Size of the picture
-    #[arg(long, value_name = "WxH", default_value = "640x486", value_parser = parse_size)]
-    size: (u32, u32),
+    ///
+    /// 640x486 if not given, and the paper's own size for its scenes
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    size: Option<(u32, u32)>,
     /// Samples along each side of a pixel: 3 gives 9 samples
     #[arg(long, value_name = "N", default_value_t = 1)]
     samples: u32,
@@ -70,6 +72,12 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     Ok((number(width)?, number(height)?))
 }
 
+/// The paper's size of a picture of its scenes; that of most of them for other scenes.
+fn default_size(scene: &str) -> (u32, u32) {
+    let Settings { width, height, .. } = Settings::default();
+    builtin::view(scene).map_or((width, height), |view| (view.width, view.height))
+}
+
 #[derive(Serialize)]
 struct Report<'a> {
     scene: &'a str,
@@ -98,7 +106,7 @@ struct Report<'a> {
 impl Render {
     pub fn run(self) -> Result<(), Failure> {
         let kind = Picture::of(&self.output, if self.bits == "16" { 16 } else { 8 })?;
-        let (width, height) = self.size;
+        let (width, height) = self.size.unwrap_or_else(|| default_size(&self.scene));
         let settings = Settings {
             width,
             height,

@@ -32,7 +32,7 @@ const PADDING: f64 = 1.0 / 1024.0;
 const UNIFORM_DENSITY: f64 = 4.0;
 
 /// Voxels to a triangle of the outermost grid where crowded voxels are divided.
-const NESTED_DENSITY: f64 = 1.0;
+const NESTED_DENSITY: f64 = 0.5;
 
 /// Most voxels along one axis.
 const MOST_VOXELS: f64 = 1024.0;
