@@ -132,7 +132,8 @@ pub(super) fn add_lights(scene: &mut Scene) {
     if found.share < LEAST_SHARE {
         added.push("a directional light".to_owned());
         let camera = &scene.camera;
-        let direction = 0.75 * camera.up - 0.35 * camera.forward - 0.75 * camera.right;
+        // Low enough for shadows to be seen.
+        let direction = 0.55 * camera.up - 0.15 * camera.forward - 0.8 * camera.right;
         scene.lights.push(Light::Directional {
             direction: direction.normalize(),
             irradiance: Vec3::splat(SUN),
