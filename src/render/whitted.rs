@@ -52,6 +52,8 @@ pub(super) struct Unit<'a> {
     shadows: Box<dyn Shadows + 'a>,
     settings: &'a Settings,
     offset: f64,
+    /// Whether shadow rays start on the surface, and leave out the triangle that they start on.
+    leaves_out_spawner: bool,
     attenuation: Attenuation,
     /// Radiance that each sample of the batch has gathered.
     gathered: Vec<Vec3>,
@@ -98,6 +100,7 @@ impl<'a> Unit<'a> {
             shadows: shadows.worker(),
             settings,
             offset: offset_of(scene),
+            leaves_out_spawner: shadows.leaves_out_spawner(),
             attenuation: Attenuation::default(),
             gathered: Vec::new(),
             done: Done::default(),
@@ -209,7 +212,11 @@ impl<'a> Unit<'a> {
             }
             let lit = source.illuminate(vertex.surface.point);
             if lit.is_some_and(|light| vertex.surface.faces(&light)) {
-                let ray = source.shadow_ray(vertex.surface.origin_above());
+                let origin = match self.leaves_out_spawner {
+                    true => vertex.surface.point.as_vec3(),
+                    false => vertex.surface.origin_above(),
+                };
+                let ray = source.shadow_ray(origin);
                 let query = ShadowQuery { ray, path: vertex.path, spawner: vertex.triangle };
                 self.queries.push((query, index as u32));
             }
@@ -243,7 +250,9 @@ impl<'a> Unit<'a> {
             let mut radiance =
                 vertex.surface.shade(self.scene.material(vertex.triangle), &illumination);
             if transparent {
-                radiance *= self.attenuation.transmittance(self.scene, self.backend, &query.ray);
+                let spawner = self.leaves_out_spawner.then_some(query.spawner);
+                radiance *=
+                    self.attenuation.transmittance(self.scene, self.backend, &query.ray, spawner);
             }
             self.gathered[vertex.sample as usize] += vertex.throughput * radiance;
         }
