@@ -45,19 +45,28 @@ fn settle() -> Result<String, String> {
     let target = |what: &str| env::var(format!("CARGO_CFG_TARGET_{what}")).unwrap_or_default();
     let platform = Platform::named(&target("OS"), &target("ARCH"), &target("ENV"))
         .ok_or("there is no wheel of it for this target")?;
-    // A path that is missing makes cargo run us again: so a failed fetch is tried anew, and a deleted cache is refilled.
-    if let Some(path) = supply::cache_path(&platform) {
-        println!("cargo:rerun-if-changed={}", path.display());
-    }
     if let Some(path) = supply::cached_library(&platform) {
-        return Ok(path.display().to_string());
+        return Ok(watched(&path));
     }
+    fetched(&platform).inspect_err(|_| {
+        // A path that never exists makes cargo run us every time: so a failed fetch is tried anew.
+        println!("cargo:rerun-if-changed=there-is-no-embree");
+    })
+}
+
+fn fetched(platform: &Platform) -> Result<String, String> {
     if env::var("CARGO_NET_OFFLINE").is_ok_and(|word| word == "true")
         || env::var_os("DOCS_RS").is_some()
     {
         return Err("it is not in the cache, and this build is offline".into());
     }
-    supply::fetch(&platform).map(|path| path.display().to_string())
+    supply::fetch(platform).map(|path| watched(&path))
+}
+
+/// Cargo runs us again when the file is gone: so a deleted cache is refilled.
+fn watched(library: &Path) -> String {
+    println!("cargo:rerun-if-changed={}", library.display());
+    library.display().to_string()
 }
 
 /// For the witness test only: `embree4-sys` links with `-lembree4`, so a folder must hold the library under that name.

@@ -6,7 +6,7 @@ cd "$(dirname "$0")"
 
 if [ -z "${LIBCLANG_PATH:-}" ] && ! ldconfig -p 2>/dev/null | grep -q 'libclang\(-[0-9.]*\)\?\.so'; then
     tools="${CARGO_TARGET_DIR:-../target}/libclang"
-    [ -d "$tools/clang/native" ] || python3 -m pip install --quiet --disable-pip-version-check --target "$tools" libclang==18.1.1
+    [ -d "$tools/clang/native" ] || PIP_ROOT_USER_ACTION=ignore python3 -m pip install --quiet --disable-pip-version-check --target "$tools" libclang==18.1.1
     LIBCLANG_PATH="$(cd "$tools/clang/native" && pwd)"
     export LIBCLANG_PATH
 fi

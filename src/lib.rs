@@ -1,13 +1,8 @@
-//! Does light reach this point? Exact and fast occlusion queries for triangle scenes.
+#![doc = include_str!("../README.md")]
+//! # Modules
 //!
-//! One direction of dependence, ground floor first:
-//!
-//! | module | holds |
-//! | --- | --- |
-//! | [`geometry`] | rays, triangles, boxes, parametric surfaces |
-//! | [`exact`] | certified predicates and the oracle |
-//! | [`occlusion`] | the backends: grid, Embree, obvhs' trees, brute force |
-//! | [`scene`] | triangles with materials, lights, a camera; loaders; built-in scenes |
+//! One direction of dependence, ground floor first: [`geometry`], [`exact`], [`scene`], [`occlusion`],
+//! [`shadow`], [`render`], [`cli`].
 
 pub mod cli;
 pub mod exact;

@@ -71,9 +71,10 @@ fn the_grid_loses_nothing_at_any_resolution() {
     let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());
     let brute =
         build(Backend::Brute, Test::Pluecker, &triangles, &BuildOptions::default()).unwrap();
-    for resolution in [[1, 1, 1], [1, 1, 200], [3, 5, 7], [64, 64, 64], [128, 2, 128]] {
-        let options =
-            BuildOptions { grid: GridOptions::Resolution(resolution), ..Default::default() };
+    let resolutions = [[1, 1, 1], [1, 1, 200], [3, 5, 7], [64, 64, 64], [128, 2, 128]];
+    for (resolution, nested) in resolutions.into_iter().flat_map(|r| [(r, false), (r, true)]) {
+        let grid = GridOptions { resolution: Some(resolution), nested };
+        let options = BuildOptions { grid, ..Default::default() };
         let grid = build(Backend::Grid, Test::Pluecker, &triangles, &options).unwrap();
         for aim in Aim::ALL {
             let mut random = Random(11);

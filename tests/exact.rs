@@ -1,12 +1,16 @@
 //! Claims about exact decisions.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use proptest::prelude::*;
 use umbra::exact::adversary::{Class, query};
 use umbra::exact::campaign::campaign;
 use umbra::exact::certified::{verdict, verdict_by_expansions};
-use umbra::exact::{Verdict, oracle};
-use umbra::geometry::{Ray, Triangle};
+use umbra::exact::{Exact, Verdict, blocks, oracle};
+use umbra::geometry::lanes::Arithmetic;
+use umbra::geometry::{Ray, Triangle, TriangleId, Triangles};
+use umbra::occlusion::{Brute, Engine, Occlusion, Tally};
 
 /// Queries of each class that are held against the oracle.
 const ORACLE_QUERIES: u64 = 4_000;
@@ -95,6 +99,29 @@ fn no_stage_contradicts_another_on_any_class() {
         assert_eq!(summary.wrong, 0, "{class}: {summary:?}");
         assert_eq!(summary.blocked + summary.clear + summary.ties, CAMPAIGN_QUERIES);
         assert_eq!(summary.by_filter + summary.by_double + summary.by_expansion, CAMPAIGN_QUERIES);
+    }
+}
+
+#[test]
+fn every_instruction_set_gives_the_certified_answers() {
+    // All triangles in one scene, so that the lanes of a vector hold very different ones.
+    let queries: Vec<_> = Class::ALL
+        .iter()
+        .flat_map(|&class| (0..40).map(move |index| query(class, index)))
+        .collect();
+    let triangles = Arc::new(queries.iter().map(|query| query.1).collect::<Triangles>());
+    for arithmetic in Arithmetic::ALL.into_iter().filter(|arithmetic| arithmetic.is_available()) {
+        let brute = Brute::new(&triangles);
+        let engine = Engine::<_, Exact>::new(triangles.clone(), brute, Some(arithmetic));
+        for (ray, _) in &queries {
+            for id in 0..triangles.len() as TriangleId {
+                let expected = ray.is_valid() && blocks(ray, &triangles.get(id));
+                let answer = ray.is_valid() && engine.meets(id, ray, &mut Tally::default());
+                assert_eq!(answer, expected, "{arithmetic:?}: {ray:?} {:?}", triangles.get(id));
+            }
+            let expected = queries.iter().any(|(_, triangle)| blocks(ray, triangle));
+            assert_eq!(engine.occluded(ray, &mut Tally::default()), expected, "{ray:?}");
+        }
     }
 }
 

@@ -1,8 +1,20 @@
 //! A square between a light and the ground: which points lie in its shadow?
 
+use std::process::ExitCode;
+
 use embree_ffi::{Device, DeviceConfig, Error, Mesh, Ray, SceneBuilder, SceneOptions};
 
-fn main() -> Result<(), Error> {
+fn main() -> ExitCode {
+    match draw() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn draw() -> Result<(), Error> {
     let device = Device::new(DeviceConfig::default())?;
     println!("Embree {} from {}", device.library().version(), device.library().path().display());
 

@@ -75,10 +75,18 @@ const _: () = {
     ["Offset of field: RTCHit::Ng_z"][::core::mem::offset_of!(RTCHit, Ng_z) - 8usize];
     ["Offset of field: RTCHit::u"][::core::mem::offset_of!(RTCHit, u) - 12usize];
     ["Offset of field: RTCHit::v"][::core::mem::offset_of!(RTCHit, v) - 16usize];
-    ["Offset of field: RTCHit::primID"][::core::mem::offset_of!(RTCHit, primID) - 20usize];
-    ["Offset of field: RTCHit::geomID"][::core::mem::offset_of!(RTCHit, geomID) - 24usize];
-    ["Offset of field: RTCHit::instID"][::core::mem::offset_of!(RTCHit, instID) - 28usize];
-    ["Offset of field: RTCHit::instPrimID"][::core::mem::offset_of!(RTCHit, instPrimID) - 32usize];
+    [
+        "Offset of field: RTCHit::primID",
+    ][::core::mem::offset_of!(RTCHit, primID) - 20usize];
+    [
+        "Offset of field: RTCHit::geomID",
+    ][::core::mem::offset_of!(RTCHit, geomID) - 24usize];
+    [
+        "Offset of field: RTCHit::instID",
+    ][::core::mem::offset_of!(RTCHit, instID) - 28usize];
+    [
+        "Offset of field: RTCHit::instPrimID",
+    ][::core::mem::offset_of!(RTCHit, instPrimID) - 32usize];
 };
 #[repr(C)]
 #[repr(align(16))]
@@ -91,8 +99,12 @@ pub struct RTCRayHit {
 const _: () = {
     ["Size of RTCRayHit"][::core::mem::size_of::<RTCRayHit>() - 96usize];
     ["Alignment of RTCRayHit"][::core::mem::align_of::<RTCRayHit>() - 16usize];
-    ["Offset of field: RTCRayHit::ray"][::core::mem::offset_of!(RTCRayHit, ray) - 0usize];
-    ["Offset of field: RTCRayHit::hit"][::core::mem::offset_of!(RTCRayHit, hit) - 48usize];
+    [
+        "Offset of field: RTCRayHit::ray",
+    ][::core::mem::offset_of!(RTCRayHit, ray) - 0usize];
+    [
+        "Offset of field: RTCRayHit::hit",
+    ][::core::mem::offset_of!(RTCRayHit, hit) - 48usize];
 };
 #[repr(C)]
 #[repr(align(16))]
@@ -115,18 +127,40 @@ pub struct RTCRay4 {
 const _: () = {
     ["Size of RTCRay4"][::core::mem::size_of::<RTCRay4>() - 192usize];
     ["Alignment of RTCRay4"][::core::mem::align_of::<RTCRay4>() - 16usize];
-    ["Offset of field: RTCRay4::org_x"][::core::mem::offset_of!(RTCRay4, org_x) - 0usize];
-    ["Offset of field: RTCRay4::org_y"][::core::mem::offset_of!(RTCRay4, org_y) - 16usize];
-    ["Offset of field: RTCRay4::org_z"][::core::mem::offset_of!(RTCRay4, org_z) - 32usize];
-    ["Offset of field: RTCRay4::tnear"][::core::mem::offset_of!(RTCRay4, tnear) - 48usize];
-    ["Offset of field: RTCRay4::dir_x"][::core::mem::offset_of!(RTCRay4, dir_x) - 64usize];
-    ["Offset of field: RTCRay4::dir_y"][::core::mem::offset_of!(RTCRay4, dir_y) - 80usize];
-    ["Offset of field: RTCRay4::dir_z"][::core::mem::offset_of!(RTCRay4, dir_z) - 96usize];
-    ["Offset of field: RTCRay4::time"][::core::mem::offset_of!(RTCRay4, time) - 112usize];
-    ["Offset of field: RTCRay4::tfar"][::core::mem::offset_of!(RTCRay4, tfar) - 128usize];
-    ["Offset of field: RTCRay4::mask"][::core::mem::offset_of!(RTCRay4, mask) - 144usize];
+    [
+        "Offset of field: RTCRay4::org_x",
+    ][::core::mem::offset_of!(RTCRay4, org_x) - 0usize];
+    [
+        "Offset of field: RTCRay4::org_y",
+    ][::core::mem::offset_of!(RTCRay4, org_y) - 16usize];
+    [
+        "Offset of field: RTCRay4::org_z",
+    ][::core::mem::offset_of!(RTCRay4, org_z) - 32usize];
+    [
+        "Offset of field: RTCRay4::tnear",
+    ][::core::mem::offset_of!(RTCRay4, tnear) - 48usize];
+    [
+        "Offset of field: RTCRay4::dir_x",
+    ][::core::mem::offset_of!(RTCRay4, dir_x) - 64usize];
+    [
+        "Offset of field: RTCRay4::dir_y",
+    ][::core::mem::offset_of!(RTCRay4, dir_y) - 80usize];
+    [
+        "Offset of field: RTCRay4::dir_z",
+    ][::core::mem::offset_of!(RTCRay4, dir_z) - 96usize];
+    [
+        "Offset of field: RTCRay4::time",
+    ][::core::mem::offset_of!(RTCRay4, time) - 112usize];
+    [
+        "Offset of field: RTCRay4::tfar",
+    ][::core::mem::offset_of!(RTCRay4, tfar) - 128usize];
+    [
+        "Offset of field: RTCRay4::mask",
+    ][::core::mem::offset_of!(RTCRay4, mask) - 144usize];
     ["Offset of field: RTCRay4::id"][::core::mem::offset_of!(RTCRay4, id) - 160usize];
-    ["Offset of field: RTCRay4::flags"][::core::mem::offset_of!(RTCRay4, flags) - 176usize];
+    [
+        "Offset of field: RTCRay4::flags",
+    ][::core::mem::offset_of!(RTCRay4, flags) - 176usize];
 };
 #[repr(C)]
 #[repr(align(16))]
@@ -151,11 +185,18 @@ const _: () = {
     ["Offset of field: RTCHit4::Ng_z"][::core::mem::offset_of!(RTCHit4, Ng_z) - 32usize];
     ["Offset of field: RTCHit4::u"][::core::mem::offset_of!(RTCHit4, u) - 48usize];
     ["Offset of field: RTCHit4::v"][::core::mem::offset_of!(RTCHit4, v) - 64usize];
-    ["Offset of field: RTCHit4::primID"][::core::mem::offset_of!(RTCHit4, primID) - 80usize];
-    ["Offset of field: RTCHit4::geomID"][::core::mem::offset_of!(RTCHit4, geomID) - 96usize];
-    ["Offset of field: RTCHit4::instID"][::core::mem::offset_of!(RTCHit4, instID) - 112usize];
-    ["Offset of field: RTCHit4::instPrimID"]
-        [::core::mem::offset_of!(RTCHit4, instPrimID) - 128usize];
+    [
+        "Offset of field: RTCHit4::primID",
+    ][::core::mem::offset_of!(RTCHit4, primID) - 80usize];
+    [
+        "Offset of field: RTCHit4::geomID",
+    ][::core::mem::offset_of!(RTCHit4, geomID) - 96usize];
+    [
+        "Offset of field: RTCHit4::instID",
+    ][::core::mem::offset_of!(RTCHit4, instID) - 112usize];
+    [
+        "Offset of field: RTCHit4::instPrimID",
+    ][::core::mem::offset_of!(RTCHit4, instPrimID) - 128usize];
 };
 #[repr(C)]
 #[repr(align(32))]
@@ -178,18 +219,40 @@ pub struct RTCRay8 {
 const _: () = {
     ["Size of RTCRay8"][::core::mem::size_of::<RTCRay8>() - 384usize];
     ["Alignment of RTCRay8"][::core::mem::align_of::<RTCRay8>() - 32usize];
-    ["Offset of field: RTCRay8::org_x"][::core::mem::offset_of!(RTCRay8, org_x) - 0usize];
-    ["Offset of field: RTCRay8::org_y"][::core::mem::offset_of!(RTCRay8, org_y) - 32usize];
-    ["Offset of field: RTCRay8::org_z"][::core::mem::offset_of!(RTCRay8, org_z) - 64usize];
-    ["Offset of field: RTCRay8::tnear"][::core::mem::offset_of!(RTCRay8, tnear) - 96usize];
-    ["Offset of field: RTCRay8::dir_x"][::core::mem::offset_of!(RTCRay8, dir_x) - 128usize];
-    ["Offset of field: RTCRay8::dir_y"][::core::mem::offset_of!(RTCRay8, dir_y) - 160usize];
-    ["Offset of field: RTCRay8::dir_z"][::core::mem::offset_of!(RTCRay8, dir_z) - 192usize];
-    ["Offset of field: RTCRay8::time"][::core::mem::offset_of!(RTCRay8, time) - 224usize];
-    ["Offset of field: RTCRay8::tfar"][::core::mem::offset_of!(RTCRay8, tfar) - 256usize];
-    ["Offset of field: RTCRay8::mask"][::core::mem::offset_of!(RTCRay8, mask) - 288usize];
+    [
+        "Offset of field: RTCRay8::org_x",
+    ][::core::mem::offset_of!(RTCRay8, org_x) - 0usize];
+    [
+        "Offset of field: RTCRay8::org_y",
+    ][::core::mem::offset_of!(RTCRay8, org_y) - 32usize];
+    [
+        "Offset of field: RTCRay8::org_z",
+    ][::core::mem::offset_of!(RTCRay8, org_z) - 64usize];
+    [
+        "Offset of field: RTCRay8::tnear",
+    ][::core::mem::offset_of!(RTCRay8, tnear) - 96usize];
+    [
+        "Offset of field: RTCRay8::dir_x",
+    ][::core::mem::offset_of!(RTCRay8, dir_x) - 128usize];
+    [
+        "Offset of field: RTCRay8::dir_y",
+    ][::core::mem::offset_of!(RTCRay8, dir_y) - 160usize];
+    [
+        "Offset of field: RTCRay8::dir_z",
+    ][::core::mem::offset_of!(RTCRay8, dir_z) - 192usize];
+    [
+        "Offset of field: RTCRay8::time",
+    ][::core::mem::offset_of!(RTCRay8, time) - 224usize];
+    [
+        "Offset of field: RTCRay8::tfar",
+    ][::core::mem::offset_of!(RTCRay8, tfar) - 256usize];
+    [
+        "Offset of field: RTCRay8::mask",
+    ][::core::mem::offset_of!(RTCRay8, mask) - 288usize];
     ["Offset of field: RTCRay8::id"][::core::mem::offset_of!(RTCRay8, id) - 320usize];
-    ["Offset of field: RTCRay8::flags"][::core::mem::offset_of!(RTCRay8, flags) - 352usize];
+    [
+        "Offset of field: RTCRay8::flags",
+    ][::core::mem::offset_of!(RTCRay8, flags) - 352usize];
 };
 #[repr(C)]
 #[repr(align(32))]
@@ -214,11 +277,18 @@ const _: () = {
     ["Offset of field: RTCHit8::Ng_z"][::core::mem::offset_of!(RTCHit8, Ng_z) - 64usize];
     ["Offset of field: RTCHit8::u"][::core::mem::offset_of!(RTCHit8, u) - 96usize];
     ["Offset of field: RTCHit8::v"][::core::mem::offset_of!(RTCHit8, v) - 128usize];
-    ["Offset of field: RTCHit8::primID"][::core::mem::offset_of!(RTCHit8, primID) - 160usize];
-    ["Offset of field: RTCHit8::geomID"][::core::mem::offset_of!(RTCHit8, geomID) - 192usize];
-    ["Offset of field: RTCHit8::instID"][::core::mem::offset_of!(RTCHit8, instID) - 224usize];
-    ["Offset of field: RTCHit8::instPrimID"]
-        [::core::mem::offset_of!(RTCHit8, instPrimID) - 256usize];
+    [
+        "Offset of field: RTCHit8::primID",
+    ][::core::mem::offset_of!(RTCHit8, primID) - 160usize];
+    [
+        "Offset of field: RTCHit8::geomID",
+    ][::core::mem::offset_of!(RTCHit8, geomID) - 192usize];
+    [
+        "Offset of field: RTCHit8::instID",
+    ][::core::mem::offset_of!(RTCHit8, instID) - 224usize];
+    [
+        "Offset of field: RTCHit8::instPrimID",
+    ][::core::mem::offset_of!(RTCHit8, instPrimID) - 256usize];
 };
 #[repr(C)]
 #[repr(align(64))]
@@ -241,18 +311,40 @@ pub struct RTCRay16 {
 const _: () = {
     ["Size of RTCRay16"][::core::mem::size_of::<RTCRay16>() - 768usize];
     ["Alignment of RTCRay16"][::core::mem::align_of::<RTCRay16>() - 64usize];
-    ["Offset of field: RTCRay16::org_x"][::core::mem::offset_of!(RTCRay16, org_x) - 0usize];
-    ["Offset of field: RTCRay16::org_y"][::core::mem::offset_of!(RTCRay16, org_y) - 64usize];
-    ["Offset of field: RTCRay16::org_z"][::core::mem::offset_of!(RTCRay16, org_z) - 128usize];
-    ["Offset of field: RTCRay16::tnear"][::core::mem::offset_of!(RTCRay16, tnear) - 192usize];
-    ["Offset of field: RTCRay16::dir_x"][::core::mem::offset_of!(RTCRay16, dir_x) - 256usize];
-    ["Offset of field: RTCRay16::dir_y"][::core::mem::offset_of!(RTCRay16, dir_y) - 320usize];
-    ["Offset of field: RTCRay16::dir_z"][::core::mem::offset_of!(RTCRay16, dir_z) - 384usize];
-    ["Offset of field: RTCRay16::time"][::core::mem::offset_of!(RTCRay16, time) - 448usize];
-    ["Offset of field: RTCRay16::tfar"][::core::mem::offset_of!(RTCRay16, tfar) - 512usize];
-    ["Offset of field: RTCRay16::mask"][::core::mem::offset_of!(RTCRay16, mask) - 576usize];
+    [
+        "Offset of field: RTCRay16::org_x",
+    ][::core::mem::offset_of!(RTCRay16, org_x) - 0usize];
+    [
+        "Offset of field: RTCRay16::org_y",
+    ][::core::mem::offset_of!(RTCRay16, org_y) - 64usize];
+    [
+        "Offset of field: RTCRay16::org_z",
+    ][::core::mem::offset_of!(RTCRay16, org_z) - 128usize];
+    [
+        "Offset of field: RTCRay16::tnear",
+    ][::core::mem::offset_of!(RTCRay16, tnear) - 192usize];
+    [
+        "Offset of field: RTCRay16::dir_x",
+    ][::core::mem::offset_of!(RTCRay16, dir_x) - 256usize];
+    [
+        "Offset of field: RTCRay16::dir_y",
+    ][::core::mem::offset_of!(RTCRay16, dir_y) - 320usize];
+    [
+        "Offset of field: RTCRay16::dir_z",
+    ][::core::mem::offset_of!(RTCRay16, dir_z) - 384usize];
+    [
+        "Offset of field: RTCRay16::time",
+    ][::core::mem::offset_of!(RTCRay16, time) - 448usize];
+    [
+        "Offset of field: RTCRay16::tfar",
+    ][::core::mem::offset_of!(RTCRay16, tfar) - 512usize];
+    [
+        "Offset of field: RTCRay16::mask",
+    ][::core::mem::offset_of!(RTCRay16, mask) - 576usize];
     ["Offset of field: RTCRay16::id"][::core::mem::offset_of!(RTCRay16, id) - 640usize];
-    ["Offset of field: RTCRay16::flags"][::core::mem::offset_of!(RTCRay16, flags) - 704usize];
+    [
+        "Offset of field: RTCRay16::flags",
+    ][::core::mem::offset_of!(RTCRay16, flags) - 704usize];
 };
 #[repr(C)]
 #[repr(align(64))]
@@ -272,32 +364,59 @@ pub struct RTCHit16 {
 const _: () = {
     ["Size of RTCHit16"][::core::mem::size_of::<RTCHit16>() - 576usize];
     ["Alignment of RTCHit16"][::core::mem::align_of::<RTCHit16>() - 64usize];
-    ["Offset of field: RTCHit16::Ng_x"][::core::mem::offset_of!(RTCHit16, Ng_x) - 0usize];
-    ["Offset of field: RTCHit16::Ng_y"][::core::mem::offset_of!(RTCHit16, Ng_y) - 64usize];
-    ["Offset of field: RTCHit16::Ng_z"][::core::mem::offset_of!(RTCHit16, Ng_z) - 128usize];
+    [
+        "Offset of field: RTCHit16::Ng_x",
+    ][::core::mem::offset_of!(RTCHit16, Ng_x) - 0usize];
+    [
+        "Offset of field: RTCHit16::Ng_y",
+    ][::core::mem::offset_of!(RTCHit16, Ng_y) - 64usize];
+    [
+        "Offset of field: RTCHit16::Ng_z",
+    ][::core::mem::offset_of!(RTCHit16, Ng_z) - 128usize];
     ["Offset of field: RTCHit16::u"][::core::mem::offset_of!(RTCHit16, u) - 192usize];
     ["Offset of field: RTCHit16::v"][::core::mem::offset_of!(RTCHit16, v) - 256usize];
-    ["Offset of field: RTCHit16::primID"][::core::mem::offset_of!(RTCHit16, primID) - 320usize];
-    ["Offset of field: RTCHit16::geomID"][::core::mem::offset_of!(RTCHit16, geomID) - 384usize];
-    ["Offset of field: RTCHit16::instID"][::core::mem::offset_of!(RTCHit16, instID) - 448usize];
-    ["Offset of field: RTCHit16::instPrimID"]
-        [::core::mem::offset_of!(RTCHit16, instPrimID) - 512usize];
+    [
+        "Offset of field: RTCHit16::primID",
+    ][::core::mem::offset_of!(RTCHit16, primID) - 320usize];
+    [
+        "Offset of field: RTCHit16::geomID",
+    ][::core::mem::offset_of!(RTCHit16, geomID) - 384usize];
+    [
+        "Offset of field: RTCHit16::instID",
+    ][::core::mem::offset_of!(RTCHit16, instID) - 448usize];
+    [
+        "Offset of field: RTCHit16::instPrimID",
+    ][::core::mem::offset_of!(RTCHit16, instPrimID) - 512usize];
 };
 impl RTCDeviceProperty {
     pub const RTC_DEVICE_PROPERTY_VERSION: RTCDeviceProperty = RTCDeviceProperty(0);
-    pub const RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(32);
-    pub const RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(33);
-    pub const RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(34);
-    pub const RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(64);
-    pub const RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED: RTCDeviceProperty =
-        RTCDeviceProperty(65);
-    pub const RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED: RTCDeviceProperty =
-        RTCDeviceProperty(66);
-    pub const RTC_DEVICE_PROPERTY_IGNORE_INVALID_RAYS_ENABLED: RTCDeviceProperty =
-        RTCDeviceProperty(67);
-    pub const RTC_DEVICE_PROPERTY_COMPACT_POLYS_ENABLED: RTCDeviceProperty = RTCDeviceProperty(68);
-    pub const RTC_DEVICE_PROPERTY_TRIANGLE_GEOMETRY_SUPPORTED: RTCDeviceProperty =
-        RTCDeviceProperty(96);
+    pub const RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(
+        32,
+    );
+    pub const RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(
+        33,
+    );
+    pub const RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(
+        34,
+    );
+    pub const RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(
+        64,
+    );
+    pub const RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED: RTCDeviceProperty = RTCDeviceProperty(
+        65,
+    );
+    pub const RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(
+        66,
+    );
+    pub const RTC_DEVICE_PROPERTY_IGNORE_INVALID_RAYS_ENABLED: RTCDeviceProperty = RTCDeviceProperty(
+        67,
+    );
+    pub const RTC_DEVICE_PROPERTY_COMPACT_POLYS_ENABLED: RTCDeviceProperty = RTCDeviceProperty(
+        68,
+    );
+    pub const RTC_DEVICE_PROPERTY_TRIANGLE_GEOMETRY_SUPPORTED: RTCDeviceProperty = RTCDeviceProperty(
+        96,
+    );
 }
 #[repr(transparent)]
 #[derive(Debug, Copy, Clone, Hash, PartialEq, Eq)]
@@ -320,7 +439,9 @@ impl RTCSceneFlags {
     pub const RTC_SCENE_FLAG_DYNAMIC: RTCSceneFlags = RTCSceneFlags(1);
     pub const RTC_SCENE_FLAG_COMPACT: RTCSceneFlags = RTCSceneFlags(2);
     pub const RTC_SCENE_FLAG_ROBUST: RTCSceneFlags = RTCSceneFlags(4);
-    pub const RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS: RTCSceneFlags = RTCSceneFlags(8);
+    pub const RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS: RTCSceneFlags = RTCSceneFlags(
+        8,
+    );
 }
 #[repr(transparent)]
 #[derive(Debug, Copy, Clone, Hash, PartialEq, Eq)]
@@ -355,7 +476,9 @@ impl RTCFormat {
 pub struct RTCFormat(pub ::core::ffi::c_uint);
 impl RTCRayQueryFlags {
     pub const RTC_RAY_QUERY_FLAG_NONE: RTCRayQueryFlags = RTCRayQueryFlags(0);
-    pub const RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER: RTCRayQueryFlags = RTCRayQueryFlags(2);
+    pub const RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER: RTCRayQueryFlags = RTCRayQueryFlags(
+        2,
+    );
     pub const RTC_RAY_QUERY_FLAG_COHERENT: RTCRayQueryFlags = RTCRayQueryFlags(65536);
 }
 #[repr(transparent)]
@@ -376,12 +499,18 @@ pub struct RTCRayQueryContext {
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 const _: () = {
-    ["Size of RTCRayQueryContext"][::core::mem::size_of::<RTCRayQueryContext>() - 8usize];
-    ["Alignment of RTCRayQueryContext"][::core::mem::align_of::<RTCRayQueryContext>() - 4usize];
-    ["Offset of field: RTCRayQueryContext::instID"]
-        [::core::mem::offset_of!(RTCRayQueryContext, instID) - 0usize];
-    ["Offset of field: RTCRayQueryContext::instPrimID"]
-        [::core::mem::offset_of!(RTCRayQueryContext, instPrimID) - 4usize];
+    [
+        "Size of RTCRayQueryContext",
+    ][::core::mem::size_of::<RTCRayQueryContext>() - 8usize];
+    [
+        "Alignment of RTCRayQueryContext",
+    ][::core::mem::align_of::<RTCRayQueryContext>() - 4usize];
+    [
+        "Offset of field: RTCRayQueryContext::instID",
+    ][::core::mem::offset_of!(RTCRayQueryContext, instID) - 0usize];
+    [
+        "Offset of field: RTCRayQueryContext::instPrimID",
+    ][::core::mem::offset_of!(RTCRayQueryContext, instPrimID) - 4usize];
 };
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
@@ -395,39 +524,50 @@ pub struct RTCFilterFunctionNArguments {
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 const _: () = {
-    ["Size of RTCFilterFunctionNArguments"]
-        [::core::mem::size_of::<RTCFilterFunctionNArguments>() - 48usize];
-    ["Alignment of RTCFilterFunctionNArguments"]
-        [::core::mem::align_of::<RTCFilterFunctionNArguments>() - 8usize];
-    ["Offset of field: RTCFilterFunctionNArguments::valid"]
-        [::core::mem::offset_of!(RTCFilterFunctionNArguments, valid) - 0usize];
-    ["Offset of field: RTCFilterFunctionNArguments::geometryUserPtr"]
-        [::core::mem::offset_of!(RTCFilterFunctionNArguments, geometryUserPtr) - 8usize];
-    ["Offset of field: RTCFilterFunctionNArguments::context"]
-        [::core::mem::offset_of!(RTCFilterFunctionNArguments, context) - 16usize];
-    ["Offset of field: RTCFilterFunctionNArguments::ray"]
-        [::core::mem::offset_of!(RTCFilterFunctionNArguments, ray) - 24usize];
-    ["Offset of field: RTCFilterFunctionNArguments::hit"]
-        [::core::mem::offset_of!(RTCFilterFunctionNArguments, hit) - 32usize];
-    ["Offset of field: RTCFilterFunctionNArguments::N"]
-        [::core::mem::offset_of!(RTCFilterFunctionNArguments, N) - 40usize];
+    [
+        "Size of RTCFilterFunctionNArguments",
+    ][::core::mem::size_of::<RTCFilterFunctionNArguments>() - 48usize];
+    [
+        "Alignment of RTCFilterFunctionNArguments",
+    ][::core::mem::align_of::<RTCFilterFunctionNArguments>() - 8usize];
+    [
+        "Offset of field: RTCFilterFunctionNArguments::valid",
+    ][::core::mem::offset_of!(RTCFilterFunctionNArguments, valid) - 0usize];
+    [
+        "Offset of field: RTCFilterFunctionNArguments::geometryUserPtr",
+    ][::core::mem::offset_of!(RTCFilterFunctionNArguments, geometryUserPtr) - 8usize];
+    [
+        "Offset of field: RTCFilterFunctionNArguments::context",
+    ][::core::mem::offset_of!(RTCFilterFunctionNArguments, context) - 16usize];
+    [
+        "Offset of field: RTCFilterFunctionNArguments::ray",
+    ][::core::mem::offset_of!(RTCFilterFunctionNArguments, ray) - 24usize];
+    [
+        "Offset of field: RTCFilterFunctionNArguments::hit",
+    ][::core::mem::offset_of!(RTCFilterFunctionNArguments, hit) - 32usize];
+    [
+        "Offset of field: RTCFilterFunctionNArguments::N",
+    ][::core::mem::offset_of!(RTCFilterFunctionNArguments, N) - 40usize];
 };
-pub type RTCFilterFunctionN =
-    ::core::option::Option<unsafe extern "C" fn(args: *const RTCFilterFunctionNArguments)>;
+pub type RTCFilterFunctionN = ::core::option::Option<
+    unsafe extern "C" fn(args: *const RTCFilterFunctionNArguments),
+>;
 #[repr(C)]
 #[derive(Debug)]
 pub struct RTCIntersectFunctionNArguments {
     _unused: [u8; 0],
 }
-pub type RTCIntersectFunctionN =
-    ::core::option::Option<unsafe extern "C" fn(args: *const RTCIntersectFunctionNArguments)>;
+pub type RTCIntersectFunctionN = ::core::option::Option<
+    unsafe extern "C" fn(args: *const RTCIntersectFunctionNArguments),
+>;
 #[repr(C)]
 #[derive(Debug)]
 pub struct RTCOccludedFunctionNArguments {
     _unused: [u8; 0],
 }
-pub type RTCOccludedFunctionN =
-    ::core::option::Option<unsafe extern "C" fn(args: *const RTCOccludedFunctionNArguments)>;
+pub type RTCOccludedFunctionN = ::core::option::Option<
+    unsafe extern "C" fn(args: *const RTCOccludedFunctionNArguments),
+>;
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct RTCIntersectArguments {
@@ -439,19 +579,27 @@ pub struct RTCIntersectArguments {
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 const _: () = {
-    ["Size of RTCIntersectArguments"][::core::mem::size_of::<RTCIntersectArguments>() - 32usize];
-    ["Alignment of RTCIntersectArguments"]
-        [::core::mem::align_of::<RTCIntersectArguments>() - 8usize];
-    ["Offset of field: RTCIntersectArguments::flags"]
-        [::core::mem::offset_of!(RTCIntersectArguments, flags) - 0usize];
-    ["Offset of field: RTCIntersectArguments::feature_mask"]
-        [::core::mem::offset_of!(RTCIntersectArguments, feature_mask) - 4usize];
-    ["Offset of field: RTCIntersectArguments::context"]
-        [::core::mem::offset_of!(RTCIntersectArguments, context) - 8usize];
-    ["Offset of field: RTCIntersectArguments::filter"]
-        [::core::mem::offset_of!(RTCIntersectArguments, filter) - 16usize];
-    ["Offset of field: RTCIntersectArguments::intersect"]
-        [::core::mem::offset_of!(RTCIntersectArguments, intersect) - 24usize];
+    [
+        "Size of RTCIntersectArguments",
+    ][::core::mem::size_of::<RTCIntersectArguments>() - 32usize];
+    [
+        "Alignment of RTCIntersectArguments",
+    ][::core::mem::align_of::<RTCIntersectArguments>() - 8usize];
+    [
+        "Offset of field: RTCIntersectArguments::flags",
+    ][::core::mem::offset_of!(RTCIntersectArguments, flags) - 0usize];
+    [
+        "Offset of field: RTCIntersectArguments::feature_mask",
+    ][::core::mem::offset_of!(RTCIntersectArguments, feature_mask) - 4usize];
+    [
+        "Offset of field: RTCIntersectArguments::context",
+    ][::core::mem::offset_of!(RTCIntersectArguments, context) - 8usize];
+    [
+        "Offset of field: RTCIntersectArguments::filter",
+    ][::core::mem::offset_of!(RTCIntersectArguments, filter) - 16usize];
+    [
+        "Offset of field: RTCIntersectArguments::intersect",
+    ][::core::mem::offset_of!(RTCIntersectArguments, intersect) - 24usize];
 };
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
@@ -464,18 +612,27 @@ pub struct RTCOccludedArguments {
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 const _: () = {
-    ["Size of RTCOccludedArguments"][::core::mem::size_of::<RTCOccludedArguments>() - 32usize];
-    ["Alignment of RTCOccludedArguments"][::core::mem::align_of::<RTCOccludedArguments>() - 8usize];
-    ["Offset of field: RTCOccludedArguments::flags"]
-        [::core::mem::offset_of!(RTCOccludedArguments, flags) - 0usize];
-    ["Offset of field: RTCOccludedArguments::feature_mask"]
-        [::core::mem::offset_of!(RTCOccludedArguments, feature_mask) - 4usize];
-    ["Offset of field: RTCOccludedArguments::context"]
-        [::core::mem::offset_of!(RTCOccludedArguments, context) - 8usize];
-    ["Offset of field: RTCOccludedArguments::filter"]
-        [::core::mem::offset_of!(RTCOccludedArguments, filter) - 16usize];
-    ["Offset of field: RTCOccludedArguments::occluded"]
-        [::core::mem::offset_of!(RTCOccludedArguments, occluded) - 24usize];
+    [
+        "Size of RTCOccludedArguments",
+    ][::core::mem::size_of::<RTCOccludedArguments>() - 32usize];
+    [
+        "Alignment of RTCOccludedArguments",
+    ][::core::mem::align_of::<RTCOccludedArguments>() - 8usize];
+    [
+        "Offset of field: RTCOccludedArguments::flags",
+    ][::core::mem::offset_of!(RTCOccludedArguments, flags) - 0usize];
+    [
+        "Offset of field: RTCOccludedArguments::feature_mask",
+    ][::core::mem::offset_of!(RTCOccludedArguments, feature_mask) - 4usize];
+    [
+        "Offset of field: RTCOccludedArguments::context",
+    ][::core::mem::offset_of!(RTCOccludedArguments, context) - 8usize];
+    [
+        "Offset of field: RTCOccludedArguments::filter",
+    ][::core::mem::offset_of!(RTCOccludedArguments, filter) - 16usize];
+    [
+        "Offset of field: RTCOccludedArguments::occluded",
+    ][::core::mem::offset_of!(RTCOccludedArguments, occluded) - 24usize];
 };
 pub type RTCErrorFunction = ::core::option::Option<
     unsafe extern "C" fn(
@@ -487,10 +644,12 @@ pub type RTCErrorFunction = ::core::option::Option<
 pub type RTCMemoryMonitorFunction = ::core::option::Option<
     unsafe extern "C" fn(ptr: *mut ::core::ffi::c_void, bytes: isize, post: bool) -> bool,
 >;
-pub type RTCProgressMonitorFunction =
-    ::core::option::Option<unsafe extern "C" fn(ptr: *mut ::core::ffi::c_void, n: f64) -> bool>;
-pub type RTCGetDeviceLastErrorMessageFunction =
-    ::core::option::Option<unsafe extern "C" fn(device: RTCDevice) -> *const ::core::ffi::c_char>;
+pub type RTCProgressMonitorFunction = ::core::option::Option<
+    unsafe extern "C" fn(ptr: *mut ::core::ffi::c_void, n: f64) -> bool,
+>;
+pub type RTCGetDeviceLastErrorMessageFunction = ::core::option::Option<
+    unsafe extern "C" fn(device: RTCDevice) -> *const ::core::ffi::c_char,
+>;
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct RTCRayN {
@@ -503,10 +662,14 @@ pub struct RTCHitN {
 }
 pub struct Embree {
     __library: ::libloading::Library,
-    pub rtcNewDevice: unsafe extern "C" fn(config: *const ::core::ffi::c_char) -> RTCDevice,
+    pub rtcNewDevice: unsafe extern "C" fn(
+        config: *const ::core::ffi::c_char,
+    ) -> RTCDevice,
     pub rtcReleaseDevice: unsafe extern "C" fn(device: RTCDevice),
-    pub rtcGetDeviceProperty:
-        unsafe extern "C" fn(device: RTCDevice, prop: RTCDeviceProperty) -> isize,
+    pub rtcGetDeviceProperty: unsafe extern "C" fn(
+        device: RTCDevice,
+        prop: RTCDeviceProperty,
+    ) -> isize,
     pub rtcGetDeviceError: unsafe extern "C" fn(device: RTCDevice) -> RTCError,
     pub rtcSetDeviceErrorFunction: unsafe extern "C" fn(
         device: RTCDevice,
@@ -518,11 +681,16 @@ pub struct Embree {
         memoryMonitor: RTCMemoryMonitorFunction,
         userPtr: *mut ::core::ffi::c_void,
     ),
-    pub rtcNewGeometry:
-        unsafe extern "C" fn(device: RTCDevice, type_: RTCGeometryType) -> RTCGeometry,
+    pub rtcNewGeometry: unsafe extern "C" fn(
+        device: RTCDevice,
+        type_: RTCGeometryType,
+    ) -> RTCGeometry,
     pub rtcReleaseGeometry: unsafe extern "C" fn(geometry: RTCGeometry),
     pub rtcCommitGeometry: unsafe extern "C" fn(geometry: RTCGeometry),
-    pub rtcSetGeometryMask: unsafe extern "C" fn(geometry: RTCGeometry, mask: ::core::ffi::c_uint),
+    pub rtcSetGeometryMask: unsafe extern "C" fn(
+        geometry: RTCGeometry,
+        mask: ::core::ffi::c_uint,
+    ),
     pub rtcSetNewGeometryBuffer: unsafe extern "C" fn(
         geometry: RTCGeometry,
         type_: RTCBufferType,
@@ -533,10 +701,15 @@ pub struct Embree {
     ) -> *mut ::core::ffi::c_void,
     pub rtcNewScene: unsafe extern "C" fn(device: RTCDevice) -> RTCScene,
     pub rtcReleaseScene: unsafe extern "C" fn(scene: RTCScene),
-    pub rtcAttachGeometry:
-        unsafe extern "C" fn(scene: RTCScene, geometry: RTCGeometry) -> ::core::ffi::c_uint,
+    pub rtcAttachGeometry: unsafe extern "C" fn(
+        scene: RTCScene,
+        geometry: RTCGeometry,
+    ) -> ::core::ffi::c_uint,
     pub rtcSetSceneFlags: unsafe extern "C" fn(scene: RTCScene, flags: RTCSceneFlags),
-    pub rtcSetSceneBuildQuality: unsafe extern "C" fn(scene: RTCScene, quality: RTCBuildQuality),
+    pub rtcSetSceneBuildQuality: unsafe extern "C" fn(
+        scene: RTCScene,
+        quality: RTCBuildQuality,
+    ),
     pub rtcSetSceneProgressMonitorFunction: unsafe extern "C" fn(
         scene: RTCScene,
         progress: RTCProgressMonitorFunction,
@@ -548,8 +721,11 @@ pub struct Embree {
         rayhit: *mut RTCRayHit,
         args: *mut RTCIntersectArguments,
     ),
-    pub rtcOccluded1:
-        unsafe extern "C" fn(scene: RTCScene, ray: *mut RTCRay, args: *mut RTCOccludedArguments),
+    pub rtcOccluded1: unsafe extern "C" fn(
+        scene: RTCScene,
+        ray: *mut RTCRay,
+        args: *mut RTCOccludedArguments,
+    ),
     pub rtcOccluded4: unsafe extern "C" fn(
         valid: *const ::core::ffi::c_int,
         scene: RTCScene,
@@ -584,36 +760,56 @@ impl Embree {
     {
         let __library = library.into();
         let rtcNewDevice = unsafe { __library.get(b"rtcNewDevice\0") }.map(|sym| *sym)?;
-        let rtcReleaseDevice = unsafe { __library.get(b"rtcReleaseDevice\0") }.map(|sym| *sym)?;
-        let rtcGetDeviceProperty =
-            unsafe { __library.get(b"rtcGetDeviceProperty\0") }.map(|sym| *sym)?;
-        let rtcGetDeviceError = unsafe { __library.get(b"rtcGetDeviceError\0") }.map(|sym| *sym)?;
-        let rtcSetDeviceErrorFunction =
-            unsafe { __library.get(b"rtcSetDeviceErrorFunction\0") }.map(|sym| *sym)?;
-        let rtcSetDeviceMemoryMonitorFunction =
-            unsafe { __library.get(b"rtcSetDeviceMemoryMonitorFunction\0") }.map(|sym| *sym)?;
-        let rtcNewGeometry = unsafe { __library.get(b"rtcNewGeometry\0") }.map(|sym| *sym)?;
-        let rtcReleaseGeometry =
-            unsafe { __library.get(b"rtcReleaseGeometry\0") }.map(|sym| *sym)?;
-        let rtcCommitGeometry = unsafe { __library.get(b"rtcCommitGeometry\0") }.map(|sym| *sym)?;
-        let rtcSetGeometryMask =
-            unsafe { __library.get(b"rtcSetGeometryMask\0") }.map(|sym| *sym)?;
-        let rtcSetNewGeometryBuffer =
-            unsafe { __library.get(b"rtcSetNewGeometryBuffer\0") }.map(|sym| *sym)?;
+        let rtcReleaseDevice = unsafe { __library.get(b"rtcReleaseDevice\0") }
+            .map(|sym| *sym)?;
+        let rtcGetDeviceProperty = unsafe { __library.get(b"rtcGetDeviceProperty\0") }
+            .map(|sym| *sym)?;
+        let rtcGetDeviceError = unsafe { __library.get(b"rtcGetDeviceError\0") }
+            .map(|sym| *sym)?;
+        let rtcSetDeviceErrorFunction = unsafe {
+            __library.get(b"rtcSetDeviceErrorFunction\0")
+        }
+            .map(|sym| *sym)?;
+        let rtcSetDeviceMemoryMonitorFunction = unsafe {
+            __library.get(b"rtcSetDeviceMemoryMonitorFunction\0")
+        }
+            .map(|sym| *sym)?;
+        let rtcNewGeometry = unsafe { __library.get(b"rtcNewGeometry\0") }
+            .map(|sym| *sym)?;
+        let rtcReleaseGeometry = unsafe { __library.get(b"rtcReleaseGeometry\0") }
+            .map(|sym| *sym)?;
+        let rtcCommitGeometry = unsafe { __library.get(b"rtcCommitGeometry\0") }
+            .map(|sym| *sym)?;
+        let rtcSetGeometryMask = unsafe { __library.get(b"rtcSetGeometryMask\0") }
+            .map(|sym| *sym)?;
+        let rtcSetNewGeometryBuffer = unsafe {
+            __library.get(b"rtcSetNewGeometryBuffer\0")
+        }
+            .map(|sym| *sym)?;
         let rtcNewScene = unsafe { __library.get(b"rtcNewScene\0") }.map(|sym| *sym)?;
-        let rtcReleaseScene = unsafe { __library.get(b"rtcReleaseScene\0") }.map(|sym| *sym)?;
-        let rtcAttachGeometry = unsafe { __library.get(b"rtcAttachGeometry\0") }.map(|sym| *sym)?;
-        let rtcSetSceneFlags = unsafe { __library.get(b"rtcSetSceneFlags\0") }.map(|sym| *sym)?;
-        let rtcSetSceneBuildQuality =
-            unsafe { __library.get(b"rtcSetSceneBuildQuality\0") }.map(|sym| *sym)?;
-        let rtcSetSceneProgressMonitorFunction =
-            unsafe { __library.get(b"rtcSetSceneProgressMonitorFunction\0") }.map(|sym| *sym)?;
-        let rtcCommitScene = unsafe { __library.get(b"rtcCommitScene\0") }.map(|sym| *sym)?;
-        let rtcIntersect1 = unsafe { __library.get(b"rtcIntersect1\0") }.map(|sym| *sym)?;
+        let rtcReleaseScene = unsafe { __library.get(b"rtcReleaseScene\0") }
+            .map(|sym| *sym)?;
+        let rtcAttachGeometry = unsafe { __library.get(b"rtcAttachGeometry\0") }
+            .map(|sym| *sym)?;
+        let rtcSetSceneFlags = unsafe { __library.get(b"rtcSetSceneFlags\0") }
+            .map(|sym| *sym)?;
+        let rtcSetSceneBuildQuality = unsafe {
+            __library.get(b"rtcSetSceneBuildQuality\0")
+        }
+            .map(|sym| *sym)?;
+        let rtcSetSceneProgressMonitorFunction = unsafe {
+            __library.get(b"rtcSetSceneProgressMonitorFunction\0")
+        }
+            .map(|sym| *sym)?;
+        let rtcCommitScene = unsafe { __library.get(b"rtcCommitScene\0") }
+            .map(|sym| *sym)?;
+        let rtcIntersect1 = unsafe { __library.get(b"rtcIntersect1\0") }
+            .map(|sym| *sym)?;
         let rtcOccluded1 = unsafe { __library.get(b"rtcOccluded1\0") }.map(|sym| *sym)?;
         let rtcOccluded4 = unsafe { __library.get(b"rtcOccluded4\0") }.map(|sym| *sym)?;
         let rtcOccluded8 = unsafe { __library.get(b"rtcOccluded8\0") }.map(|sym| *sym)?;
-        let rtcOccluded16 = unsafe { __library.get(b"rtcOccluded16\0") }.map(|sym| *sym)?;
+        let rtcOccluded16 = unsafe { __library.get(b"rtcOccluded16\0") }
+            .map(|sym| *sym)?;
         Ok(Embree {
             __library,
             rtcNewDevice,
@@ -647,7 +843,11 @@ impl Embree {
     pub unsafe fn rtcReleaseDevice(&self, device: RTCDevice) {
         unsafe { (self.rtcReleaseDevice)(device) }
     }
-    pub unsafe fn rtcGetDeviceProperty(&self, device: RTCDevice, prop: RTCDeviceProperty) -> isize {
+    pub unsafe fn rtcGetDeviceProperty(
+        &self,
+        device: RTCDevice,
+        prop: RTCDeviceProperty,
+    ) -> isize {
         unsafe { (self.rtcGetDeviceProperty)(device, prop) }
     }
     pub unsafe fn rtcGetDeviceError(&self, device: RTCDevice) -> RTCError {
@@ -667,9 +867,15 @@ impl Embree {
         memoryMonitor: RTCMemoryMonitorFunction,
         userPtr: *mut ::core::ffi::c_void,
     ) {
-        unsafe { (self.rtcSetDeviceMemoryMonitorFunction)(device, memoryMonitor, userPtr) }
+        unsafe {
+            (self.rtcSetDeviceMemoryMonitorFunction)(device, memoryMonitor, userPtr)
+        }
     }
-    pub unsafe fn rtcNewGeometry(&self, device: RTCDevice, type_: RTCGeometryType) -> RTCGeometry {
+    pub unsafe fn rtcNewGeometry(
+        &self,
+        device: RTCDevice,
+        type_: RTCGeometryType,
+    ) -> RTCGeometry {
         unsafe { (self.rtcNewGeometry)(device, type_) }
     }
     pub unsafe fn rtcReleaseGeometry(&self, geometry: RTCGeometry) {
@@ -678,7 +884,11 @@ impl Embree {
     pub unsafe fn rtcCommitGeometry(&self, geometry: RTCGeometry) {
         unsafe { (self.rtcCommitGeometry)(geometry) }
     }
-    pub unsafe fn rtcSetGeometryMask(&self, geometry: RTCGeometry, mask: ::core::ffi::c_uint) {
+    pub unsafe fn rtcSetGeometryMask(
+        &self,
+        geometry: RTCGeometry,
+        mask: ::core::ffi::c_uint,
+    ) {
         unsafe { (self.rtcSetGeometryMask)(geometry, mask) }
     }
     pub unsafe fn rtcSetNewGeometryBuffer(
@@ -691,7 +901,15 @@ impl Embree {
         itemCount: usize,
     ) -> *mut ::core::ffi::c_void {
         unsafe {
-            (self.rtcSetNewGeometryBuffer)(geometry, type_, slot, format, byteStride, itemCount)
+            (self
+                .rtcSetNewGeometryBuffer)(
+                geometry,
+                type_,
+                slot,
+                format,
+                byteStride,
+                itemCount,
+            )
         }
     }
     pub unsafe fn rtcNewScene(&self, device: RTCDevice) -> RTCScene {
@@ -710,7 +928,11 @@ impl Embree {
     pub unsafe fn rtcSetSceneFlags(&self, scene: RTCScene, flags: RTCSceneFlags) {
         unsafe { (self.rtcSetSceneFlags)(scene, flags) }
     }
-    pub unsafe fn rtcSetSceneBuildQuality(&self, scene: RTCScene, quality: RTCBuildQuality) {
+    pub unsafe fn rtcSetSceneBuildQuality(
+        &self,
+        scene: RTCScene,
+        quality: RTCBuildQuality,
+    ) {
         unsafe { (self.rtcSetSceneBuildQuality)(scene, quality) }
     }
     pub unsafe fn rtcSetSceneProgressMonitorFunction(

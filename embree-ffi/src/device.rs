@@ -90,6 +90,8 @@ impl DeviceConfig {
     }
 
     /// Build with at most this many threads; 0 is all. Queries run on the thread that asks.
+    ///
+    /// Embree's threads are shared by all devices of the process: the largest number asked for by a living one counts.
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads;
         self

@@ -11,6 +11,7 @@
     clippy::useless_transmute
 )]
 #[doc(hidden)]
+#[rustfmt::skip]
 pub mod bindings;
 
 mod device;

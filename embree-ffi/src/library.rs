@@ -47,8 +47,7 @@ impl Library {
         for candidate in candidates {
             match Self::open(&candidate) {
                 Ok(library) => return Ok(library),
-                // The system's search knows no file: that is "not found".
-                Err(_) if candidate.is_bare() && !candidate.is_loadable() => {}
+                Err(_) if !candidate.is_there() => {}
                 Err(reason) => {
                     let Candidate { path, origin } = candidate;
                     refusal.get_or_insert(Error::Refused { path, origin, reason });

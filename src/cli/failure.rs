@@ -1,22 +1,56 @@
 //! Errors as the user sees them: one clear line, and an exit status.
 
+use std::io;
+use std::path::Path;
 use std::process::ExitCode;
+
+/// Prints a line to standard error; that nobody reads it is no failure.
+macro_rules! say {
+    ($($part:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr(), $($part)*);
+    }};
+}
+pub(super) use say;
 
 /// Why a command ended.
 #[derive(Debug)]
 pub(super) enum Failure {
     /// The input is bad: exit status 2.
     Input(String),
+    /// Whoever read standard output has seen enough: nothing to say.
+    NoReader,
 }
 
 impl Failure {
+    /// Something that is read cannot be.
+    pub fn unreadable(path: &Path, reason: &io::Error) -> Self {
+        Self::Input(format!("cannot read {}: {reason}", path.display()))
+    }
+
+    /// Something that is written cannot be.
+    pub fn unwritable(path: &Path, reason: &io::Error) -> Self {
+        let advice = match reason.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                "; make room, or name another folder"
+            }
+            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+                "; name another place"
+            }
+            _ => "",
+        };
+        Self::Input(format!("cannot write {}: {reason}{advice}", path.display()))
+    }
+
     /// Prints it, and gives the exit status.
     pub fn report(self) -> ExitCode {
         match self {
             Self::Input(message) => {
-                eprintln!("umbra: {message}");
+                // One line, whatever names and files hold.
+                say!("umbra: {}", message.replace(char::is_control, " "));
                 ExitCode::from(2)
             }
+            Self::NoReader => ExitCode::SUCCESS,
         }
     }
 }

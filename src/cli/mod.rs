@@ -3,16 +3,30 @@
 mod failure;
 mod options;
 mod progress;
+mod query;
 mod render;
+mod scene;
 
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use failure::Failure;
 
+const DETAILS: &str = "\
+A scene is a built-in one (jittered-sparse, jittered-dense, drum, chair-room), an .obj, a .glb or .gltf,
+or a .toml that puts meshes, materials, lights and a camera together.
+
+Exit status: 0 done; 1 a comparison failed; 2 bad input, and nothing was written.
+
+Examples:
+  umbra render chair-room -o room.png
+  umbra query chair-room --rays rays.csv -o blocked.csv
+  umbra scene drum -o drum.glb";
+
 /// Does light reach this point? Exact and fast occlusion queries for triangle scenes.
 #[derive(Parser)]
-#[command(name = "umbra", version, about, max_term_width = 100, subcommand_required = true)]
+#[command(name = "umbra", version, about, max_term_width = 100, arg_required_else_help = true, after_help = DETAILS)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -21,6 +35,8 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Render(render::Render),
+    Query(query::Query),
+    Scene(scene::SceneFile),
 }
 
 /// Runs the command line of this process. Exit status 0: done; 1: a comparison failed; 2: bad input.
@@ -28,12 +44,20 @@ enum Command {
 pub fn main() -> ExitCode {
     let outcome = match Cli::try_parse() {
         Ok(Cli { command: Command::Render(render) }) => render.run(),
-        Err(error) if !error.use_stderr() => {
-            // --help and --version; a closed pipe is no failure.
-            let _ = error.print();
-            return ExitCode::SUCCESS;
-        }
-        Err(error) => Err(Failure::from(error)),
+        Ok(Cli { command: Command::Query(query) }) => query.run(),
+        Ok(Cli { command: Command::Scene(scene) }) => scene.run(),
+        Err(error) => match error.kind() {
+            // A closed pipe is no failure.
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+                let _ = error.print();
+                return ExitCode::SUCCESS;
+            }
+            ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+                let _ = error.print();
+                return ExitCode::from(2);
+            }
+            _ => Err(Failure::from(error)),
+        },
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

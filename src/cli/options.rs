@@ -1,12 +1,15 @@
 //! Arguments that several commands share.
 
-use std::path::Path;
+use std::fs::OpenOptions;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
 
-use super::Failure;
+use super::failure::{Failure, say};
+use super::progress::with_word;
 use crate::occlusion::{Backend, BuildOptions, GridOptions, Occlusion, Test, build};
+use crate::render::{folder_of, write_whole};
 use crate::scene::Scene;
 
 /// Which engine answers.
@@ -15,12 +18,16 @@ pub(super) struct EngineOptions {
     /// The engine that answers occlusion queries
     #[arg(long, value_enum, default_value_t = Backend::Grid)]
     pub backend: Backend,
-    /// The triangle test (all backends but Embree, which has its own)
-    #[arg(long, value_enum, default_value_t = Test::Pluecker)]
-    pub test: Test,
+    /// The triangle test: exact, unless the engine is embree, which has pluecker (its robust mode, the
+    /// default) and moller (its default mode)
+    #[arg(long, value_enum)]
+    test: Option<Test>,
     /// Voxels of the grid along x, y and z, instead of a choice by the number of triangles
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_resolution)]
     pub grid: Option<[u32; 3]>,
+    /// A plain uniform grid: crowded voxels are not divided
+    #[arg(long)]
+    pub uniform: bool,
     /// Threads; all processors if not given
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
@@ -36,12 +43,19 @@ fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
 }
 
 impl EngineOptions {
+    /// The test that was asked for, or the backend's own choice.
+    pub fn test(&self) -> Test {
+        self.test.unwrap_or_else(|| self.backend.default_test())
+    }
+
     /// Builds the backend; also says how many seconds that took.
     pub fn build(&self, scene: &Scene) -> Result<(Box<dyn Occlusion>, f64), Failure> {
-        let grid = self.grid.map_or_else(GridOptions::default, GridOptions::Resolution);
+        let grid = GridOptions { resolution: self.grid, nested: !self.uniform };
         let options = BuildOptions { grid, ..BuildOptions::default() };
         let start = Instant::now();
-        let backend = build(self.backend, self.test, &scene.triangles, &options)?;
+        let backend = with_word(&format!("building {}", self.backend), || {
+            build(self.backend, self.test(), &scene.triangles, &options)
+        })?;
         Ok((backend, start.elapsed().as_secs_f64()))
     }
 
@@ -61,35 +75,66 @@ impl EngineOptions {
 
 /// Loads a scene, and says what the program decided for the user.
 pub(super) fn load_scene(name: &str) -> Result<Scene, Failure> {
-    let scene = crate::scene::load(name)?;
+    let scene = with_word(&format!("loading {name}"), || crate::scene::load(name))?;
     for note in &scene.notes {
-        eprintln!("umbra: {}: {note}", scene.name);
+        say!("umbra: {}: {note}", scene.name);
     }
     Ok(scene)
 }
 
+/// Fails early where a file could not be written at the end, or would replace another of the command:
+/// an output, or an input.
+pub(super) fn check_outputs(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
+    let mut taken: Vec<_> = inputs.iter().filter_map(|input| input.canonicalize().ok()).collect();
+    for output in outputs {
+        check_writable(output)?;
+        let Some(place) = place_of(output) else { continue };
+        if taken.contains(&place) {
+            return Err(Failure::Input(format!(
+                "cannot write {}: the command reads or writes it already; give another name",
+                output.display()
+            )));
+        }
+        taken.push(place);
+    }
+    Ok(())
+}
+
 /// Fails early where a file could not be written at the end.
-pub(super) fn check_writable(path: &Path) -> Result<(), Failure> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+fn check_writable(path: &Path) -> Result<(), Failure> {
+    let folder = folder_of(path);
     let refuse =
         |reason: String| Failure::Input(format!("cannot write {}: {reason}", path.display()));
     if !folder.is_dir() {
         return Err(refuse(format!("there is no folder {}; make it first", folder.display())));
     }
-    if path.is_dir() {
-        return Err(refuse("it is a folder; give a file name".to_owned()));
+    let place = path.metadata().ok();
+    if place.as_ref().is_some_and(std::fs::Metadata::is_dir) {
+        return Err(refuse("it is a folder; give the name of a file".to_owned()));
     }
-    tempfile::tempfile_in(folder).map_err(|e| refuse(e.to_string()))?;
-    Ok(())
+    let tried = match place {
+        // A device or a pipe: opening it may already do something.
+        Some(place) if !place.is_file() => return Ok(()),
+        // Renaming over a file does not ask whether it may be written; so ask here.
+        Some(_) => OpenOptions::new().append(true).open(path).map(drop),
+        None => Ok(()),
+    };
+    tried
+        .and_then(|()| tempfile::tempfile_in(folder).map(drop))
+        .map_err(|reason| Failure::unwritable(path, &reason))
+}
+
+/// Where a file is or will be, however it is named; none for devices and pipes, which nothing replaces.
+fn place_of(path: &Path) -> Option<PathBuf> {
+    match path.canonicalize() {
+        Ok(place) => place.is_file().then_some(place),
+        Err(_) => Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?)),
+    }
 }
 
 /// Writes statistics as JSON.
 pub(super) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
     let mut text = serde_json::to_string_pretty(value).expect("statistics are plain data");
     text.push('\n');
-    crate::render::write_whole(path, text.as_bytes())
-        .map_err(|e| Failure::Input(format!("cannot write {}: {e}", path.display())))
+    write_whole(path, text.as_bytes()).map_err(|reason| Failure::unwritable(path, &reason))
 }

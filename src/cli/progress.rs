@@ -1,7 +1,8 @@
 //! A progress bar for whatever takes more than a second, on terminals only.
 
 use std::io::IsTerminal;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use indicatif::{HumanCount, ProgressBar, ProgressStyle};
@@ -20,35 +21,68 @@ pub(super) fn with_bar<T: Send>(
     progress: &Progress,
     job: impl FnOnce() -> T + Send,
 ) -> T {
+    let done = || (progress.pixels.load(Relaxed), progress.rays.load(Relaxed));
+    with_rate(Some(pixels), done, job)
+}
+
+/// Runs a job while showing how much of the whole (unknown if none) is done, and how many rays.
+pub(super) fn with_rate<T: Send>(
+    whole: Option<u64>,
+    done: impl Fn() -> (u64, u64) + Sync,
+    job: impl FnOnce() -> T + Send,
+) -> T {
+    let start = Instant::now();
+    let status = || {
+        let (done, rays) = done();
+        let rate = rays as f64 / start.elapsed().as_secs_f64();
+        (done, format!("{} rays/s", HumanCount(rate as u64)))
+    };
+    watch(whole, status, job)
+}
+
+/// Runs a job while saying what it is.
+pub(super) fn with_word<T: Send>(word: &str, job: impl FnOnce() -> T + Send) -> T {
+    watch(None, || (0, word.to_owned()), job)
+}
+
+/// Runs a job while showing what `status` says: how much is done, and a message.
+fn watch<T: Send>(
+    whole: Option<u64>,
+    status: impl Fn() -> (u64, String) + Sync,
+    job: impl FnOnce() -> T + Send,
+) -> T {
     if !std::io::stderr().is_terminal() {
         return job();
     }
-    let finished = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        scope.spawn(|| {
-            let start = Instant::now();
-            let mut bar = None;
-            while !finished.load(Relaxed) {
-                std::thread::sleep(BEAT);
-                if start.elapsed() < PATIENCE {
-                    continue;
-                }
-                let bar = bar.get_or_insert_with(|| new_bar(pixels));
-                bar.set_position(progress.pixels.load(Relaxed));
-                let rays = progress.rays.load(Relaxed) as f64 / start.elapsed().as_secs_f64();
-                bar.set_message(format!("{} rays/s", HumanCount(rays as u64)));
+    // Dropped with the job's result, or if the job panics.
+    let (running, finished) = mpsc::channel::<()>();
+    let status = &status;
+    std::thread::scope(move |scope| {
+        scope.spawn(move || {
+            let ended = |beat| finished.recv_timeout(beat) != Err(mpsc::RecvTimeoutError::Timeout);
+            if ended(PATIENCE) {
+                return;
             }
-            if let Some(bar) = bar {
-                bar.finish_and_clear();
+            let bar = new_bar(whole);
+            while !ended(BEAT) {
+                let (done, message) = status();
+                bar.set_position(done);
+                bar.set_message(message);
+                bar.tick();
             }
+            bar.finish_and_clear();
         });
         let result = job();
-        finished.store(true, Relaxed);
+        drop(running);
         result
     })
 }
 
-fn new_bar(pixels: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {msg}  {eta} left");
-    ProgressBar::new(pixels).with_style(style.expect("the template is well formed"))
+fn new_bar(whole: Option<u64>) -> ProgressBar {
+    let (bar, template) = match whole {
+        Some(whole) => (ProgressBar::new(whole), "{wide_bar} {percent:>3} %  {msg}  {eta} left"),
+        None => (ProgressBar::new_spinner(), "{spinner} {msg}  {elapsed}"),
+    };
+    let style = ProgressStyle::with_template(template);
+    bar.with_style(style.expect("the template is well formed"))
 }

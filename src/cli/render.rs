@@ -6,8 +6,8 @@ use std::time::Instant;
 use clap::Args;
 use serde::Serialize;
 
-use super::Failure;
-use super::options::{EngineOptions, check_writable, load_scene, write_json};
+use super::failure::{Failure, say};
+use super::options::{EngineOptions, check_outputs, load_scene, write_json};
 use super::progress::with_bar;
 use crate::render::{
     Order, Picture, Progress, Rendered, Settings, Statistics, render, write_picture,
@@ -15,8 +15,16 @@ use crate::render::{
 use crate::scene::Dropped;
 use crate::shadow::{Method, prepare};
 
+const DETAILS: &str = "\
+A scene without camera or lights gets sensible ones, and the command says so.
+
+Examples:
+  umbra render chair-room -o room.png --size 1280x972 --samples 3
+  umbra render sponza.glb -o sponza.exr --backend cwbvh --aov --stats sponza.json";
+
 /// Renders a picture of a scene
 #[derive(Args)]
+#[command(after_help = DETAILS)]
 pub(super) struct Render {
     /// A built-in scene, or an .obj, .glb, .gltf or .toml file
     scene: String,
@@ -104,10 +112,10 @@ impl Render {
         if self.exposure.is_some_and(|e| !(e.is_finite() && e > 0.0)) {
             return Err(Failure::Input("--exposure: give a number above 0".to_owned()));
         }
-        check_writable(&self.output)?;
-        if let Some(stats) = &self.stats {
-            check_writable(stats)?;
-        }
+        let mask = self.aov.then(|| beside(&self.output, "mask"));
+        let outputs = [Some(&self.output), mask.as_ref(), self.stats.as_ref()];
+        let outputs: Vec<_> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
+        check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = self.engine.pool()?;
         pool.install(|| self.render(kind, &settings))
     }
@@ -133,13 +141,13 @@ impl Render {
             write_picture(&mask.picture(), 1.0, Picture::Png8, &beside(&self.output, "mask"))?;
         }
         let rays = statistics.rays;
-        eprintln!(
+        say!(
             "{}: {} triangles, {} lights, {} {} {}; {} rays ({} to lights, {} of them blocked) in {:.2} s: {:.2} million a second; loaded in {:.2} s, built in {:.2} s",
             scene.name,
             scene.triangles.len(),
             scene.lights.len(),
             self.engine.backend,
-            self.engine.test,
+            self.engine.test(),
             self.shadows,
             rays.total(),
             rays.shadow,
@@ -159,7 +167,7 @@ impl Render {
             local_origin: scene.origin.to_array(),
             notes: &scene.notes,
             backend: self.engine.backend.name(),
-            test: self.engine.test.name(),
+            test: self.engine.test().name(),
             shadows: self.shadows.name(),
             width: settings.width,
             height: settings.height,

@@ -70,7 +70,7 @@ fn examine(class: Class, index: u64) -> Summary {
     let (ray, triangle) = query(class, index);
     let truth = verdict_by_expansions(&ray, &triangle);
     let (verdict, stage) = decide(&ray, &triangle);
-    let is_sampled = index % ORACLE_SAMPLE == 0;
+    let is_sampled = index.is_multiple_of(ORACLE_SAMPLE);
     let claims = [filter::<false>(&ray, &triangle), filter::<true>(&ray, &triangle)];
 
     let is_blocked = truth == Verdict::Blocked;

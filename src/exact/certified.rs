@@ -16,7 +16,7 @@
 //! differences of f32, two products, three sums), one of the start eight (three differences), one of the stop
 //! nine (three differences or one more product, one more sum). So the error is at most γ₉ times the permanent of the
 //! rounded inputs, itself computed with nine roundings at most; and γ₉/(1−u)⁹ < 10u(1−u), so comparing with
-//! [`ERROR_BOUND`] = 10u times the computed permanent is sound. Nothing can underflow (the smallest product of four f32
+//! `ERROR_BOUND` = 10u times the computed permanent is sound. Nothing can underflow (the smallest product of four f32
 //! is 2⁻⁵⁹⁶) or overflow, and fusing multiplications with additions could only remove roundings.
 //!
 //! Source of the method: Shewchuk (see `expansion`); the permanents are those of his `orient3d` filter.

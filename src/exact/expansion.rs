@@ -161,8 +161,8 @@ mod tests {
             .iter()
             .map(|term| {
                 let (exponent, fraction) =
-                    (term.to_bits() >> 52 & 0x7ff, term.to_bits() & ((1 << 52) - 1));
-                let significand = if exponent == 0 { fraction } else { fraction | 1 << 52 };
+                    ((term.to_bits() >> 52) & 0x7ff, term.to_bits() & ((1 << 52) - 1));
+                let significand = if exponent == 0 { fraction } else { fraction | (1 << 52) };
                 let magnitude = BigInt::from(significand) << exponent.saturating_sub(1);
                 if *term < 0.0 { -magnitude } else { magnitude }
             })

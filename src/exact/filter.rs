@@ -26,13 +26,13 @@
 //!
 //! The interval 0 < T < end·|n·d| is compared without division. A finite end is the ratio end/1, an infinite
 //! one 1/0; for p/q the second comparison is p|n·d| − qT > 0, whose terms meet nine roundings: its error is
-//! below γ₉ 2E² (p|d|₁ + q|c|₁). Beyond the ends a lane is only let go if the sign of the slope is certain.
+//! below γ₉ 2E² (p|d|₁ + q|c|₁); the code has 5u times 4E² in place of 10u times 2E². Beyond the ends a lane is only let go if the sign of the slope is certain.
 //!
 //! **Underflow.** Sums and differences never lose anything to underflow. A product does, at most η = 2⁻¹⁵⁰.
 //! Carried through, that adds at most (12E + 4|d|₁ + 12)η to the error of W plus that of n·d, (2|c|₁ + 3)η to
-//! that of T, and (2p|d|₁ + 3p + 2q|c|₁ + 3q + 1)η to that of the end. Adding [`UNDERFLOW`] to each factor and
+//! that of T, and (2p|d|₁ + 3p + 2q|c|₁ + 3q + 1)η to that of the end. Adding `UNDERFLOW` to each factor and
 //! sum in the bounds pays for these and for what underflows in the bounds themselves:
-//! 10u times [`UNDERFLOW`] is 20η.
+//! 10u times `UNDERFLOW` is 20η.
 //!
 //! **Overflow.** Each bound is made of magnitudes at least twice those of the terms it bounds, every
 //! intermediate of the test has a counterpart there that is no smaller, and nothing is subtracted. So if the bound is

@@ -92,7 +92,7 @@ fn zero() -> BigInt {
 /// A finite f32, as a multiple of the least positive one.
 fn integer(value: f32) -> BigInt {
     let bits = value.to_bits();
-    let exponent = bits >> 23 & 0xff;
+    let exponent = (bits >> 23) & 0xff;
     let fraction = bits & 0x7f_ffff;
     // A denormal has the scale of exponent 1 and no hidden bit.
     let significand = if exponent == 0 { fraction } else { fraction | 0x80_0000 };

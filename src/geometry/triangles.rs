@@ -18,6 +18,7 @@ pub type Triangle = [Vec3; 3];
 pub struct Triangles {
     corners: Vec<[Vec3A; 3]>,
     opaque: u32,
+    bounds: Option<Bounds>,
 }
 
 impl Triangles {
@@ -36,7 +37,8 @@ impl Triangles {
         let opaque = count(corners.len());
         corners.extend(transparent.into_iter().map(pad));
         count(corners.len());
-        Self { corners, opaque }
+        let bounds = bounds(&corners);
+        Self { corners, opaque, bounds }
     }
 
     /// Number of triangles.
@@ -87,11 +89,7 @@ impl Triangles {
     /// The box of all triangles; `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
-        let mut corners = self.corners.iter().flatten().copied();
-        let first = corners.next()?;
-        let (min, max) =
-            corners.fold((first, first), |(min, max), corner| (min.min(corner), max.max(corner)));
-        Some(Bounds { min: min.into(), max: max.into() })
+        self.bounds
     }
 
     /// Bytes held.
@@ -106,4 +104,12 @@ impl FromIterator<Triangle> for Triangles {
     fn from_iter<I: IntoIterator<Item = Triangle>>(triangles: I) -> Self {
         Self::new(triangles, [])
     }
+}
+
+fn bounds(corners: &[[Vec3A; 3]]) -> Option<Bounds> {
+    let mut corners = corners.iter().flatten().copied();
+    let first = corners.next()?;
+    let (min, max) =
+        corners.fold((first, first), |(min, max), corner| (min.min(corner), max.max(corner)));
+    Some(Bounds { min: min.into(), max: max.into() })
 }

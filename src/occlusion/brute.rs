@@ -20,8 +20,10 @@ impl Brute {
 }
 
 impl Walk for Brute {
+    const INLINED: bool = false;
+
     #[inline(always)]
-    fn walk<V: Visit>(&self, _: &Ray, visitor: &mut V) {
+    fn walk<V: Visit + ?Sized>(&self, _: &Ray, visitor: &mut V) {
         visit_all(&self.order, BLOCK, visitor);
     }
 
@@ -36,7 +38,7 @@ impl Walk for Brute {
 
 /// Visits all there is, in blocks.
 #[inline(always)]
-pub(super) fn visit_all<V: Visit>(order: &[TriangleId], block: u32, visitor: &mut V) {
+pub(super) fn visit_all<V: Visit + ?Sized>(order: &[TriangleId], block: u32, visitor: &mut V) {
     let mut start = 0;
     for triangles in order.chunks(block as usize) {
         let cell = Cell { start, end: start + triangles.len() as u32 };

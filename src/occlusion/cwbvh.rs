@@ -45,7 +45,7 @@ impl Cwbvh {
 
 impl Walk for Cwbvh {
     #[inline(always)]
-    fn walk<V: Visit>(&self, ray: &Ray, visitor: &mut V) {
+    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
         let culled = match self.space.passage(ray) {
             Passage::Outside => return,
             Passage::Everything => return visit_all(&self.tree.primitive_indices, 8, visitor),

@@ -6,11 +6,12 @@ use std::sync::Arc;
 
 use super::nearest::NearestHit;
 use super::sparing::SparingOccluder;
+use super::walk::walk_any;
 use super::{Cell, LeftOut, Nearest, Occluder, Occlusion, Tally, Visit, Walk};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
 #[cfg(not(target_arch = "x86_64"))]
 use crate::geometry::lanes::Scalar;
-use crate::geometry::lanes::{Arithmetic, Lanes};
+use crate::geometry::lanes::{Arithmetic, Kernel, Lanes};
 #[cfg(target_arch = "x86_64")]
 use crate::geometry::lanes::{Avx, Sse};
 use crate::geometry::{Ray, TriangleId, Triangles};
@@ -45,16 +46,18 @@ impl<W: Walk, T: TriangleTest> Engine<W, T> {
         &self.triangles
     }
 
-    /// Runs a job compiled for the instruction set of the arithmetic.
+    /// Runs a job compiled for the instruction set of the arithmetic, which `new` checked.
     #[inline]
     fn run<J: Job<W, T>>(&self, job: J) -> J::Answer {
         #[cfg(target_arch = "x86_64")]
         match self.arithmetic {
-            Arithmetic::Sse => job.run::<Sse>(self),
-            // SAFETY: `new` checked that this CPU has the arithmetic.
-            Arithmetic::Avx2 => unsafe { run_avx2(job, self) },
-            // SAFETY: as above.
-            Arithmetic::Avx512 => unsafe { run_avx512(job, self) },
+            Arithmetic::Sse => Sse::run(InLanes::<_, _, Sse>(job, self, PhantomData)),
+            Arithmetic::Avx2 => {
+                Avx::<false>::run(InLanes::<_, _, Avx<false>>(job, self, PhantomData))
+            }
+            Arithmetic::Avx512 => {
+                Avx::<true>::run(InLanes::<_, _, Avx<true>>(job, self, PhantomData))
+            }
         }
         #[cfg(not(target_arch = "x86_64"))]
         job.run::<Scalar<false, false>>(self)
@@ -67,16 +70,16 @@ pub(super) trait Job<W: Walk, T: TriangleTest> {
     fn run<L: Lanes>(self, engine: &Engine<W, T>) -> Self::Answer;
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-fn run_avx2<W: Walk, T: TriangleTest, J: Job<W, T>>(job: J, engine: &Engine<W, T>) -> J::Answer {
-    job.run::<Avx<false>>(engine)
-}
+/// A job in lanes of one kind.
+struct InLanes<J, E, L>(J, E, PhantomData<L>);
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-fn run_avx512<W: Walk, T: TriangleTest, J: Job<W, T>>(job: J, engine: &Engine<W, T>) -> J::Answer {
-    job.run::<Avx<true>>(engine)
+impl<W: Walk, T: TriangleTest, J: Job<W, T>, L: Lanes> Kernel for InLanes<J, &Engine<W, T>, L> {
+    type Answer = J::Answer;
+
+    #[inline(always)]
+    fn run(self) -> J::Answer {
+        self.0.run::<L>(self.1)
+    }
 }
 
 impl<W: Walk, T: TriangleTest> Occlusion for Engine<W, T> {
@@ -96,11 +99,6 @@ impl<W: Walk, T: TriangleTest> Occlusion for Engine<W, T> {
         tally: &mut Tally,
     ) -> Option<Occluder> {
         self.run(SparingOccluder { ray, within, left_out, tally })
-    }
-
-    fn occluded_many(&self, rays: &[Ray], blocked: &mut [bool], tally: &mut Tally) {
-        assert_eq!(rays.len(), blocked.len(), "one answer a ray");
-        self.run(Many { rays, blocked, tally });
     }
 
     fn meets(&self, triangle: TriangleId, ray: &Ray, tally: &mut Tally) -> bool {
@@ -129,7 +127,8 @@ impl<W: Walk, T: TriangleTest> Occlusion for Engine<W, T> {
     }
 }
 
-/// Tests triangles of a cell; calls `hit` for each that the ray meets, in their order, until it breaks.
+/// Tests triangles of a cell; calls `hit` for each wanted one that the ray meets, in their order, until
+/// it breaks.
 #[inline(always)]
 pub(super) fn test_each<T: TriangleTest, L: Lanes>(
     triangles: &Triangles,
@@ -137,25 +136,51 @@ pub(super) fn test_each<T: TriangleTest, L: Lanes>(
     lanes: &RayLanes<L>,
     ids: &[TriangleId],
     tally: &mut Tally,
-    mut wanted: impl FnMut(TriangleId) -> bool,
-    mut hit: impl FnMut(TriangleId) -> ControlFlow<()>,
+    wanted: impl Fn(TriangleId) -> bool,
+    hit: impl FnMut(TriangleId) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     tally.triangle_tests += ids.len() as u64;
-    for ids in ids.chunks(L::COUNT) {
-        let claims = T::claims::<L>(lanes, &L::gather(triangles.corners(), ids));
-        let used = u32::MAX >> (32 - ids.len());
-        let mut candidates = (claims.certain | claims.open) & used;
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros();
-            candidates &= candidates - 1;
-            let id = ids[lane as usize];
-            let certain = claims.certain & (1 << lane) != 0;
-            if wanted(id) && (certain || T::settle(ray, &triangles.get(id))) {
-                hit(id)?;
+    // A culler may have come here through a closure of its own: see `lanes`.
+    L::run(TestEach::<T, L, _, _> { triangles, ray, lanes, ids, wanted, hit, test: PhantomData })
+}
+
+struct TestEach<'a, T, L, Wanted, Hit> {
+    triangles: &'a Triangles,
+    ray: &'a Ray,
+    lanes: &'a RayLanes<L>,
+    ids: &'a [TriangleId],
+    wanted: Wanted,
+    hit: Hit,
+    test: PhantomData<T>,
+}
+
+impl<T, L, Wanted, Hit> Kernel for TestEach<'_, T, L, Wanted, Hit>
+where
+    T: TriangleTest,
+    L: Lanes,
+    Wanted: Fn(TriangleId) -> bool,
+    Hit: FnMut(TriangleId) -> ControlFlow<()>,
+{
+    type Answer = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run(mut self) -> ControlFlow<()> {
+        for ids in self.ids.chunks(L::COUNT) {
+            let claims = T::claims::<L>(self.lanes, &L::gather(self.triangles.corners(), ids));
+            let used = u32::MAX >> (32 - ids.len());
+            let mut candidates = (claims.certain | claims.open) & used;
+            while candidates != 0 {
+                let lane = candidates.trailing_zeros();
+                candidates &= candidates - 1;
+                let id = ids[lane as usize];
+                let certain = claims.certain & (1 << lane) != 0;
+                if (self.wanted)(id) && (certain || T::settle(self.ray, &self.triangles.get(id))) {
+                    (self.hit)(id)?;
+                }
             }
         }
+        ControlFlow::Continue(())
     }
-    ControlFlow::Continue(())
 }
 
 /// Whether the ray can be answered at all; counts it.
@@ -177,40 +202,30 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for AnyOccluder<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, engine: &Engine<W, T>) -> Option<Occluder> {
-        any_occluder::<W, T, L>(engine, self.ray, self.within, self.tally)
-    }
-}
-
-#[inline(always)]
-fn any_occluder<W: Walk, T: TriangleTest, L: Lanes>(
-    engine: &Engine<W, T>,
-    ray: &Ray,
-    within: Option<Cell>,
-    tally: &mut Tally,
-) -> Option<Occluder> {
-    if !admit(ray, tally) {
-        return None;
-    }
-    let lanes = RayLanes::<L>::new(ray);
-    let mut visitor = AnyVisitor::<T, L> {
-        triangles: &engine.triangles,
-        ray,
-        lanes,
-        tally,
-        found: None,
-        test: PhantomData,
-    };
-    match within {
-        None => {
-            visitor.tally.traversals += 1;
-            engine.walk.walk(ray, &mut visitor);
+        let Self { ray, within, tally } = self;
+        if !admit(ray, tally) {
+            return None;
         }
-        Some(cell) => {
-            let run = &engine.walk.order()[cell.start as usize..cell.end as usize];
-            let _ = visitor.visit(cell, run);
+        let lanes = RayLanes::<L>::new(ray);
+        let triangles = &engine.triangles;
+        let mut visitor =
+            AnyVisitor::<T, L> { triangles, ray, lanes, tally, found: None, test: PhantomData };
+        match within {
+            None => {
+                visitor.tally.traversals += 1;
+                if W::INLINED && L::COUNT > 4 {
+                    engine.walk.walk(ray, &mut visitor);
+                } else {
+                    walk_any(&engine.walk, ray, &mut visitor);
+                }
+            }
+            Some(cell) => {
+                let run = &engine.walk.order()[cell.start as usize..cell.end as usize];
+                let _ = visitor.visit(cell, run);
+            }
         }
+        visitor.found
     }
-    visitor.found
 }
 
 struct AnyVisitor<'a, T, L> {
@@ -245,23 +260,6 @@ impl<T: TriangleTest, L: Lanes> Visit for AnyVisitor<'_, T, L> {
     #[inline(always)]
     fn end(&self) -> f32 {
         self.ray.end
-    }
-}
-
-struct Many<'a> {
-    rays: &'a [Ray],
-    blocked: &'a mut [bool],
-    tally: &'a mut Tally,
-}
-
-impl<W: Walk, T: TriangleTest> Job<W, T> for Many<'_> {
-    type Answer = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, engine: &Engine<W, T>) {
-        for (ray, blocked) in self.rays.iter().zip(self.blocked) {
-            *blocked = any_occluder::<W, T, L>(engine, ray, None, self.tally).is_some();
-        }
     }
 }
 
@@ -310,7 +308,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for AllTransparent<'_> {
             test: PhantomData,
         };
         let ray = visitor.job.ray;
-        engine.walk.walk(ray, &mut visitor);
+        walk_any(&engine.walk, ray, &mut visitor);
     }
 }
 

@@ -4,8 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::{Brute, Bvh2, Cwbvh, Engine, Grid, GridOptions, Occlusion, Walk};
+use crate::exact::Exact;
 use crate::geometry::Triangles;
-use crate::geometry::intersect::{Moller, Pluecker};
+use crate::geometry::intersect::{Moller, Pluecker, Watertight};
 use crate::geometry::lanes::Arithmetic;
 
 /// The engines.
@@ -26,6 +27,12 @@ pub enum Backend {
 impl Backend {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Grid, Self::Embree, Self::Bvh2, Self::Cwbvh, Self::Brute];
+
+    /// The test it uses where nothing else is asked for: the exact one where it can.
+    #[must_use]
+    pub fn default_test(self) -> Test {
+        if self == Self::Embree { Test::Pluecker } else { Test::Exact }
+    }
 
     /// The name on the command line.
     #[must_use]
@@ -53,11 +60,15 @@ pub enum Test {
     Moller,
     /// Plücker volumes, as Embree's robust mode has it.
     Pluecker,
+    /// Woop, Benthin and Wald: watertight in f32.
+    Watertight,
+    /// Certified: the answer of exact arithmetic.
+    Exact,
 }
 
 impl Test {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Moller, Self::Pluecker];
+    pub const ALL: [Self; 4] = [Self::Moller, Self::Pluecker, Self::Watertight, Self::Exact];
 
     /// The name on the command line.
     #[must_use]
@@ -65,6 +76,8 @@ impl Test {
         match self {
             Self::Moller => "moller",
             Self::Pluecker => "pluecker",
+            Self::Watertight => "watertight",
+            Self::Exact => "exact",
         }
     }
 }
@@ -82,6 +95,9 @@ pub struct BuildOptions {
     pub grid: GridOptions,
     /// The arithmetic of the triangle tests; that of this CPU if none is named.
     pub arithmetic: Option<Arithmetic>,
+    /// How Embree is used.
+    #[cfg(feature = "embree")]
+    pub embree: super::EmbreeOptions,
 }
 
 /// Why there is no backend.
@@ -92,6 +108,15 @@ pub enum BackendError {
         "this umbra was built without Embree; build it with the default features, or choose another backend: grid, bvh2, cwbvh, brute"
     )]
     WithoutEmbree,
+    /// Embree cannot be used here.
+    #[cfg(feature = "embree")]
+    #[error(transparent)]
+    Embree(#[from] embree_ffi::Error),
+    /// Embree decides by its own arithmetic.
+    #[error(
+        "embree has no test '{0}': its own are pluecker (robust mode) and moller (default mode)"
+    )]
+    NotInEmbree(Test),
 }
 
 /// Builds a backend over the triangles.
@@ -112,8 +137,27 @@ pub fn build(
         Backend::Bvh2 => engine(test, triangles, Bvh2::new(triangles), options),
         Backend::Cwbvh => engine(test, triangles, Cwbvh::new(triangles), options),
         Backend::Brute => engine(test, triangles, Brute::new(triangles), options),
-        Backend::Embree => return Err(BackendError::WithoutEmbree),
+        Backend::Embree => embree(test, triangles, options)?,
     })
+}
+
+fn embree(
+    test: Test,
+    triangles: &Arc<Triangles>,
+    options: &BuildOptions,
+) -> Result<Box<dyn Occlusion>, BackendError> {
+    let robust = match test {
+        Test::Pluecker => true,
+        Test::Moller => false,
+        other => return Err(BackendError::NotInEmbree(other)),
+    };
+    #[cfg(feature = "embree")]
+    return Ok(Box::new(super::Embree::new(triangles.clone(), robust, options.embree)?));
+    #[cfg(not(feature = "embree"))]
+    {
+        let _ = (robust, triangles, options);
+        Err(BackendError::WithoutEmbree)
+    }
 }
 
 fn engine<W: Walk>(
@@ -126,5 +170,7 @@ fn engine<W: Walk>(
     match test {
         Test::Moller => Box::new(Engine::<W, Moller>::new(triangles, walk, arithmetic)),
         Test::Pluecker => Box::new(Engine::<W, Pluecker>::new(triangles, walk, arithmetic)),
+        Test::Watertight => Box::new(Engine::<W, Watertight>::new(triangles, walk, arithmetic)),
+        Test::Exact => Box::new(Engine::<W, Exact>::new(triangles, walk, arithmetic)),
     }
 }

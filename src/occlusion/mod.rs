@@ -11,6 +11,8 @@ mod bvh2;
 mod clip;
 mod culling_space;
 mod cwbvh;
+#[cfg(feature = "embree")]
+mod embree;
 mod engine;
 mod grid;
 mod kind;
@@ -25,6 +27,8 @@ use std::any::Any;
 pub use brute::Brute;
 pub use bvh2::Bvh2;
 pub use cwbvh::Cwbvh;
+#[cfg(feature = "embree")]
+pub use embree::{Embree, EmbreeOptions, Isa, PacketWidth, Quality};
 pub use engine::Engine;
 pub use grid::{Grid, GridOptions};
 pub use kind::{Backend, BackendError, BuildOptions, Test, build};

@@ -4,6 +4,7 @@ use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
 use super::engine::{Engine, Job, admit, test_each};
+use super::walk::walk_any;
 use super::{Cell, Tally, Visit, Walk};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
 use crate::geometry::lanes::Lanes;
@@ -20,7 +21,7 @@ pub struct Nearest {
 
 /// Distance along the ray to the triangle's plane, in f64; `None` behind the origin or if parallel.
 #[inline]
-fn distance(ray: &Ray, &[a, b, c]: &Triangle) -> Option<f64> {
+pub(super) fn distance(ray: &Ray, &[a, b, c]: &Triangle) -> Option<f64> {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
     let normal = (b - a).cross(c - a);
     let t = normal.dot(a - ray.origin.as_dvec3()) / normal.dot(ray.direction.as_dvec3());
@@ -50,7 +51,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for NearestHit<'_> {
             best: None,
             test: PhantomData,
         };
-        engine.walk().walk(ray, &mut visitor);
+        walk_any(engine.walk(), ray, &mut visitor);
         visitor.best
     }
 }

@@ -4,6 +4,7 @@ use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
 use super::engine::{Engine, Job, admit, test_each};
+use super::walk::walk_any;
 use super::{Cell, LeftOut, Occluder, Tally, Visit, Walk};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
 use crate::geometry::lanes::Lanes;
@@ -40,7 +41,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for SparingOccluder<'_> {
         match within {
             None => {
                 visitor.tally.traversals += 1;
-                engine.walk().walk(ray, &mut visitor);
+                walk_any(engine.walk(), ray, &mut visitor);
             }
             Some(cell) => {
                 let run = &engine.walk().order()[cell.start as usize..cell.end as usize];

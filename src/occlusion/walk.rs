@@ -1,6 +1,7 @@
 //! Culling: which triangles might a ray meet?
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use super::Cell;
 use crate::geometry::{Ray, TriangleId};
@@ -21,12 +22,40 @@ pub trait Visit {
 /// own box the segment passes within a few roundings of the coordinates, provided the ray comes as
 /// near to the triangle's plane and edges: what a sound f32 test may still call a hit.
 pub trait Walk: Send + Sync + 'static {
+    /// Whether any-hit queries get a copy of the walk of their own for each triangle test and each wide
+    /// instruction set, with the test inlined; costs some seconds of compilation each.
+    const INLINED: bool = true;
+
     /// Visits what the ray might meet, nearer parts mostly first.
-    fn walk<V: Visit>(&self, ray: &Ray, visitor: &mut V);
+    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V);
 
     /// The triangles in an order that keeps each cell together.
     fn order(&self) -> &[TriangleId];
 
     /// Bytes held.
     fn memory(&self) -> usize;
+}
+
+impl<W: Walk> Walk for Arc<W> {
+    const INLINED: bool = false;
+
+    #[inline(always)]
+    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
+        W::walk(self, ray, visitor);
+    }
+
+    fn order(&self) -> &[TriangleId] {
+        W::order(self)
+    }
+
+    fn memory(&self) -> usize {
+        W::memory(self)
+    }
+}
+
+/// A walk that is compiled once for a culler, whatever visits: for queries that are not worth a copy of
+/// the walk for each triangle test and instruction set. Costs a virtual call a cell.
+#[inline(never)]
+pub(super) fn walk_any<W: Walk>(walk: &W, ray: &Ray, visitor: &mut dyn Visit) {
+    walk.walk(ray, visitor);
 }

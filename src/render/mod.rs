@@ -12,13 +12,16 @@ mod settings;
 mod shading;
 mod statistics;
 mod whitted;
+mod whole_file;
 
 pub use film::{Film, ShadowMask};
 pub use order::Order;
-pub use output::{OutputError, Picture, write_picture, write_whole};
+pub use output::{OutputError, Picture, write_picture};
 pub use settings::{Settings, SettingsError};
 pub use statistics::{RayCounts, Statistics};
 pub use whitted::RecordedQuery;
+pub(crate) use whole_file::folder_of;
+pub use whole_file::{WholeFile, write_whole};
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 

@@ -1,14 +1,10 @@
 //! Pictures on disk: PNG with 8 or 16 bits, OpenEXR.
-//!
-//! A picture is written to a temporary name beside its place and renamed, so that what was there
-//! before is kept until the new one is whole.
 
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageBuffer, ImageFormat, Rgb};
 
-use super::Film;
+use super::{Film, write_whole};
 
 /// How a picture is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,27 +113,4 @@ pub fn write_picture(
     let unwritable = |reason: String| OutputError::Unwritable { path: path.to_owned(), reason };
     image.write_to(&mut encoded, format).map_err(|e| unwritable(e.to_string()))?;
     write_whole(path, encoded.get_ref()).map_err(|e| unwritable(e.to_string()))
-}
-
-/// Writes a file under a temporary name in the same folder, then renames it.
-///
-/// # Errors
-/// What the system said.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".umbra-");
-    // Temporary files are private by default; this one becomes an ordinary file, so the umask decides.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder)?;
-    let mut writer = BufWriter::new(file);
-    writer.write_all(bytes)?;
-    let file = writer.into_inner().map_err(std::io::IntoInnerError::into_error)?;
-    file.as_file().sync_all()?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
 }

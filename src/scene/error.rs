@@ -13,6 +13,14 @@ pub enum SceneError {
         /// What the system said.
         reason: std::io::Error,
     },
+    /// The file could not be written.
+    #[error("cannot write {path}: {reason}", path = path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        reason: std::io::Error,
+    },
     /// The file was read but is not what its name says.
     #[error("{path}: {problem}", path = path.display())]
     Malformed {

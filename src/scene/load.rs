@@ -24,8 +24,8 @@ pub fn load(name_or_path: &str) -> Result<Scene, SceneError> {
 /// # Errors
 /// What is wrong with the name or the file, in one line.
 pub fn draft(name_or_path: &str) -> Result<Draft, SceneError> {
-    if let Some(draft) = builtin::draft(name_or_path) {
-        return Ok(draft);
+    if builtin::NAMES.contains(&name_or_path) {
+        return builtin::draft_at(name_or_path, 1.0);
     }
     let path = Path::new(name_or_path);
     match extension(path).as_str() {

@@ -12,12 +12,14 @@ mod gltf;
 mod light;
 mod load;
 mod material;
+mod memory;
 mod mtl;
 mod obj;
 mod placement;
 mod polygon;
 mod sensible;
 mod toml;
+mod write;
 
 use std::sync::Arc;
 
@@ -29,7 +31,7 @@ pub use error::SceneError;
 pub use light::{Illumination, Light};
 pub use load::{draft, load};
 pub use material::Material;
-use material::Surroundings;
+pub use write::{write, write_glb, write_obj};
 
 use crate::geometry::{Bounds, TriangleId, Triangles};
 

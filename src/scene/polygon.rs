@@ -92,7 +92,7 @@ mod tests {
         // An L and an arrow head, from every corner, both ways round.
         let letter = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
         let arrow = [[0.0, 0.0], [2.0, -1.0], [0.5, 0.0], [2.0, 1.0]];
-        for (shape, size) in [(&letter[..], 4.0), (&arrow[..], 1.5)] {
+        for (shape, size) in [(&letter[..], 4.0), (&arrow[..], 0.5)] {
             for start in 0..shape.len() {
                 let mut corners = polygon(shape);
                 corners.rotate_left(start);

@@ -11,54 +11,68 @@ use crate::geometry::Bounds;
 const FIELD_OF_VIEW: f64 = 40.0;
 /// Width over height of the pictures a chosen camera is made for.
 const ASPECT: f64 = 1.25;
-/// A scene is taken to have Z up if its height in Z is less than this share of its other extents.
-const FLAT: f32 = 0.25;
+/// Share of the picture that the scene fills.
+const FILLED: f64 = 0.94;
+/// A scene is flat in an axis where it is smaller than this share of its other extents.
+const FLAT: f64 = 0.25;
+/// Emissive surfaces of a smaller share of the whole area are not what lights the scene.
+const LEAST_SHARE: f64 = 1.0 / 300.0;
+/// Irradiance of the sun.
+const SUN: f32 = 3.0;
 
-/// Looks at the middle of the scene from the front, right and above, so that all of it is seen; into
-/// a room with one open side, from there.
+/// Looks at the scene from the front, right and above, so that all of it is seen; into a room with
+/// one open side, from there.
 pub(super) fn add_camera(scene: &mut Scene, up: Option<DVec3>) {
     let bounds = scene.bounds();
-    let extent = bounds.extent();
-    let is_flat = extent.z < FLAT * extent.x.min(extent.y);
-    let up = up.unwrap_or(if is_flat { DVec3::Z } else { DVec3::Y });
+    let up = up.unwrap_or(if is_flat(&bounds, DVec3::Z) { DVec3::Z } else { DVec3::Y });
     let (from, what) = match open_side(scene, &bounds) {
-        Some(side) => (side, "that looks into the open side"),
+        Some(side) => (side, "looks into the open side"),
         None => {
             let front = if up.z.abs() > up.y.abs() { DVec3::NEG_Y } else { DVec3::Z };
-            let right = up.cross(front);
-            ((0.45 * right + 0.35 * up + 0.82 * front), "that sees the whole scene")
+            let height = if is_flat(&bounds, up) { 0.65 } else { 0.35 };
+            (0.45 * up.cross(front) + height * up + 0.82 * front, "sees the whole scene")
         }
     };
-    scene.camera = fitted(&bounds, from, up);
+    scene.camera = fitted(scene, from, up);
     let axis = if up == DVec3::Z { ", with Z up," } else { "" };
-    scene.notes.push(format!("no camera in the file: one{axis} {what} was added"));
+    scene.notes.push(format!("no camera in the file: one{axis} that {what} was added"));
 }
 
-/// The camera that sees all of the box from that side, as near as can be.
-fn fitted(bounds: &Bounds, from: DVec3, up: DVec3) -> Camera {
-    let centre = bounds.centre();
+/// Whether the extent along an axis is much smaller than both others.
+fn is_flat(bounds: &Bounds, axis: DVec3) -> bool {
+    let extent = bounds.extent().as_dvec3();
+    let across = if axis.abs().max_element() == axis.x.abs() {
+        extent.y.min(extent.z)
+    } else if axis.abs().max_element() == axis.y.abs() {
+        extent.x.min(extent.z)
+    } else {
+        extent.x.min(extent.y)
+    };
+    extent.dot(axis.abs()) < FLAT * across
+}
+
+/// The camera nearest to the scene that sees all of it from that direction.
+///
+/// The four planes of its view touch the scene: left with right, and top with bottom, give a distance
+/// each, of which the greater holds.
+fn fitted(scene: &Scene, from: DVec3, up: DVec3) -> Camera {
+    let centre = scene.bounds().centre();
     let mut camera = Camera::facing(centre, -from, up, FIELD_OF_VIEW.to_radians());
-    let vertical = (0.5 * camera.field_of_view).tan();
-    let distance = corners(bounds)
-        .map(|corner| {
-            let (x, y) = ((corner - centre).dot(camera.right), (corner - centre).dot(camera.up));
-            let z = (corner - centre).dot(camera.forward);
-            (x.abs() / (vertical * ASPECT)).max(y.abs() / vertical) - z
-        })
-        .fold(0.0, f64::max);
-    camera.position = centre - 1.03 * distance * camera.forward;
+    let high = (0.5 * camera.field_of_view).tan() * FILLED;
+    let wide = high * ASPECT;
+    let [mut right, mut left, mut top, mut bottom] = [f64::NEG_INFINITY; 4];
+    for corner in scene.triangles.corners().iter().flatten() {
+        let seen = corner.as_dvec3() - centre;
+        let (x, y) = (seen.dot(camera.right), seen.dot(camera.up));
+        let depth = seen.dot(camera.forward);
+        (right, left) = (right.max(x - wide * depth), left.max(-x - wide * depth));
+        (top, bottom) = (top.max(y - high * depth), bottom.max(-y - high * depth));
+    }
+    let distance = ((right + left) / (2.0 * wide)).max((top + bottom) / (2.0 * high));
+    camera.position = centre - distance * camera.forward
+        + 0.5 * (right - left) * camera.right
+        + 0.5 * (top - bottom) * camera.up;
     camera
-}
-
-fn corners(bounds: &Bounds) -> impl Iterator<Item = DVec3> {
-    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-    (0..8).map(move |i| {
-        DVec3::new(
-            if i & 1 == 0 { min.x } else { max.x },
-            if i & 2 == 0 { min.y } else { max.y },
-            if i & 4 == 0 { min.z } else { max.z },
-        )
-    })
 }
 
 /// The one side of the box that has no wall while the other five have.
@@ -103,30 +117,30 @@ fn walls(scene: &Scene, bounds: &Bounds) -> [(DVec3, f64); 6] {
     walls
 }
 
-/// Lights in place of emissive surfaces, and a sun over the shoulder of the camera where there are
-/// none or the scene lies open to the sky.
+/// Lights in place of emissive surfaces, and a sun at the side of the camera where there are none or
+/// they are but sparks in a large scene.
 pub(super) fn add_lights(scene: &mut Scene) {
     let found = emitters::lights(scene);
-    if found.lights.is_empty() {
-        let camera = &scene.camera;
-        let direction = (camera.up - 0.6 * camera.forward - 0.5 * camera.right).normalize();
-        scene.lights.push(Light::Directional { direction, irradiance: Vec3::splat(SUN) });
-        scene.notes.push("no light in the file: a directional one was added".to_owned());
-        return;
+    let mut added = Vec::new();
+    if !found.lights.is_empty() {
+        let all = match found.surfaces - found.lights.len() {
+            0 => format!("each of its {}", found.surfaces),
+            _ => format!("the {} brightest of its {}", found.lights.len(), found.surfaces),
+        };
+        added.push(format!("a point light before {all} emissive surfaces"));
     }
-    let left_out = match found.surfaces - found.lights.len() {
-        0 => String::new(),
-        rest => format!(", the brightest; {rest} more are left dark"),
-    };
-    scene.notes.push(format!(
-        "no light in the file: {} point lights were put before its emissive surfaces{left_out}",
-        found.lights.len()
-    ));
-    scene.lights = found.lights;
+    if found.share < LEAST_SHARE {
+        added.push("a directional light".to_owned());
+        let camera = &scene.camera;
+        let direction = 0.75 * camera.up - 0.35 * camera.forward - 0.75 * camera.right;
+        scene.lights.push(Light::Directional {
+            direction: direction.normalize(),
+            irradiance: Vec3::splat(SUN),
+        });
+    }
+    scene.lights.extend(found.lights);
+    scene.notes.push(format!("no light in the file: added {}", added.join(" and ")));
 }
-
-/// Irradiance of the sun.
-const SUN: f32 = 3.0;
 
 /// A little ambient light, so that shadows are not black, and a sky where a sun shines.
 pub(super) fn choose_surroundings(scene: &mut Scene) {
@@ -143,5 +157,5 @@ pub(super) fn choose_surroundings(scene: &mut Scene) {
     scene.ambient = 0.05 * total;
     let sunny = scene.lights.iter().any(|light| matches!(light, Light::Directional { .. }));
     scene.background =
-        if sunny { total.element_sum() / 3.0 * Vec3::new(0.13, 0.18, 0.25) } else { Vec3::ZERO };
+        if sunny { total.element_sum() / 3.0 * Vec3::new(0.10, 0.15, 0.22) } else { Vec3::ZERO };
 }

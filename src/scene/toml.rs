@@ -138,7 +138,7 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
     let bytes = read_file(path)?;
     let text = String::from_utf8_lossy(&bytes);
     let description: Description = ::toml::from_str(&text).map_err(|error| {
-        let line = error.span().map_or(0, |span| text[..span.start].lines().count().max(1));
+        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
         malformed(path, format!("line {line}: {}", error.message().replace('\n', " ")))
     })?;
     let up = DVec3::from(description.up.unwrap_or([0.0, 1.0, 0.0]));
@@ -204,9 +204,7 @@ fn add_mesh(
             }
             read_mesh(&file)?
         }
-        (None, Some(name), None, None) => builtin::draft(name).ok_or_else(|| {
-            SceneError::Unknown { name: name.clone(), known: builtin::NAMES.join(", ") }
-        })?,
+        (None, Some(name), None, None) => builtin::draft_at(name, 1.0)?,
         (None, None, Some(quads), None) => {
             inline(quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]))
         }

@@ -28,6 +28,8 @@ impl<'a, V: Verdict, M: Memory, K: Shelf<M>> Cached<'a, V, M, K> {
         shared: M::Shared,
         plan: Plan,
     ) -> Self {
+        // Embree's companion grid is built when it is first asked for: now, not by a worker.
+        let _ = backend.order();
         Self { backend, opaque, verdict, shelf, shared, plan }
     }
 

@@ -1,6 +1,8 @@
 //! Shared by the tests: random numbers, meshes, rays.
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
+pub mod command;
+
 use glam::Vec3;
 use umbra::geometry::{Ray, Triangle};
 
@@ -113,3 +115,39 @@ impl Aim {
         }
     }
 }
+
+/// The ten real scenes: data beside the project, in `UMBRA_SCENES` or `../shared/scenes`.
+///
+/// `None` where they are absent: then the test says so on the terminal, past the test harness, and in CI
+/// it fails.
+pub fn real_scenes() -> Option<std::path::PathBuf> {
+    use std::io::Write;
+    let folder = std::env::var_os("UMBRA_SCENES").map_or_else(
+        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes"),
+        Into::into,
+    );
+    if folder.join("sponza.glb").is_file() {
+        return Some(folder);
+    }
+    let message = format!(
+        "the real scenes are not in {}: set UMBRA_SCENES to their folder",
+        folder.display()
+    );
+    assert!(std::env::var_os("CI").is_none(), "{message}");
+    let _ = writeln!(std::io::stderr(), "\n*** NOT TESTED on real scenes: {message} ***");
+    None
+}
+
+/// The real scenes' files.
+pub const REAL_SCENES: [&str; 10] = [
+    "CornellBox-Original.obj",
+    "bigtujunga.glb",
+    "bunny.obj",
+    "delft.obj",
+    "jungle.glb",
+    "office.obj",
+    "satellite.glb",
+    "sponza.glb",
+    "staircase.glb",
+    "tower_bridge.glb",
+];

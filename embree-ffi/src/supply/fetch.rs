@@ -4,6 +4,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
     process::Command,
+    sync::atomic::{AtomicU32, Ordering::Relaxed},
 };
 
 use super::{
@@ -27,8 +28,10 @@ pub fn fetch_into(root: &Path, platform: &Platform, python: &Path) -> Result<Pat
     if library.is_file() {
         return Ok(library);
     }
-    let draft =
-        root.join("embree-ffi").join(format!("draft-{}-{}", platform.name, std::process::id()));
+    static DRAFTS: AtomicU32 = AtomicU32::new(0);
+    let number = DRAFTS.fetch_add(1, Relaxed);
+    let draft = format!("draft-{}-{}-{number}", platform.name, std::process::id());
+    let draft = root.join("embree-ffi").join(draft);
     let outcome = fill(&draft, platform, python).and_then(|()| {
         match fs::rename(draft.join("libraries"), &home) {
             Err(error) if !library.is_file() => Err(format!("{}: {error}", home.display())),
@@ -52,7 +55,7 @@ fn fill(draft: &Path, platform: &Platform, python: &Path) -> Result<(), String> 
         "--no-input",
         "--no-deps",
     ])
-    .args(["--retries", "1", "--timeout", "20", "--only-binary=:all:", "--implementation", "cp"])
+    .args(["--retries", "1", "--timeout", "10", "--only-binary=:all:", "--implementation", "cp"])
     .args(["--python-version", "3.12", "--abi", "cp312", "--platform", platform.pip_tag, "--dest"])
     .arg(draft)
     .arg(format!("embreex=={WHEEL_VERSION}"));
@@ -155,5 +158,44 @@ mod tests {
         let reason = fetch_into(root.path(), &linux(), &stub(tools.path(), &script)).unwrap_err();
         assert!(reason.starts_with("unpacking: the wheel's sha256 is "), "{reason}");
         assert!(!cache_folder(root.path(), &linux()).exists());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn two_builds_at_once_fetch_one_whole_cache() {
+        let root = tempfile::tempdir().unwrap();
+        let tools = tempfile::tempdir().unwrap();
+        let real = python().unwrap();
+        let wheel = tools.path().join("forged.whl");
+        let make = "import sys, zipfile, hashlib
+with zipfile.ZipFile(sys.argv[1], 'w') as wheel:
+    wheel.writestr('embreex.libs/libembree4-4aef3270.so.4', 'embree')
+    wheel.writestr('embreex.libs/libtbb.so.12', 'tbb')
+    wheel.writestr('embreex/other.py', 'other')
+print(hashlib.sha256(open(sys.argv[1], 'rb').read()).hexdigest(), end='')";
+        let made = Command::new(&real).args(["-c", make]).arg(&wheel).output().unwrap();
+        let sha256 = String::from_utf8(made.stdout).unwrap();
+        let platform = Platform { sha256: sha256.leak(), ..linux() };
+        let script = format!(
+            "if [ \"$1\" = -m ]; then for a; do [ \"$p\" = --dest ] && d=$a; p=$a; done; \
+             sleep 0.2; cp {} \"$d\"; exit 0; fi\nexec {} \"$@\"",
+            wheel.display(),
+            real.display()
+        );
+        let stub = stub(tools.path(), &script);
+        std::thread::scope(|scope| {
+            for _ in 0..2 {
+                scope.spawn(|| {
+                    let library = fetch_into(root.path(), &platform, &stub).unwrap();
+                    assert_eq!(fs::read_to_string(library).unwrap(), "embree");
+                });
+            }
+        });
+        let left: Vec<_> = fs::read_dir(root.path().join("embree-ffi"))
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .collect();
+        assert_eq!(left, [cache_folder(root.path(), &platform)], "no draft is left");
+        assert_eq!(fs::read_dir(&left[0]).unwrap().count(), 2, "the libraries and nothing else");
     }
 }

@@ -33,16 +33,18 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Whether the system is to search for it.
-    pub fn is_bare(&self) -> bool {
-        self.path.components().count() == 1
-    }
-
-    /// Whether the loader finds and loads it at all.
-    pub fn is_loadable(&self) -> bool {
+    /// Whether there is such a file, or the system's search finds one.
+    pub fn is_there(&self) -> bool {
+        if !is_bare(&self.path) {
+            return self.path.is_file();
+        }
         // SAFETY: a library of this name is taken to be Embree. It is unloaded only if nothing of it was used.
         unsafe { open(&self.path) }.is_ok()
     }
+}
+
+fn is_bare(path: &std::path::Path) -> bool {
+    path.components().count() == 1
 }
 
 /// Where to look, in order. Taken as values so that every case can be tried without touching the environment.
@@ -74,7 +76,7 @@ impl Surroundings {
         }
         let mut found = Vec::new();
         if let Some(path) = &self.recorded {
-            let bare = path.components().count() == 1;
+            let bare = is_bare(path);
             if bare || path.is_file() {
                 found.push(Candidate {
                     path: path.clone(),

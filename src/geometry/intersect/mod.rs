@@ -1,13 +1,17 @@
 //! Triangle tests: whether a ray meets a triangle, one file a method.
 
+mod embree;
 mod moller;
 mod own_box;
 mod pluecker;
+mod watertight;
 
+pub use embree::{AtLeast, AtMost, BoxTest, FastBox, RobustBox};
 pub use moller::Moller;
 pub use pluecker::Pluecker;
+pub use watertight::{Shear, Watertight};
 
-use super::lanes::{Lanes, Vector};
+use super::lanes::{Lanes, Vector, splat};
 use super::{Ray, Triangle};
 
 /// What a test says of several triangles at once, a bit a lane.
@@ -28,6 +32,8 @@ pub struct RayLanes<L> {
     pub direction: Vector<L>,
     /// End of the interval.
     pub end: L,
+    /// What [`Watertight`] needs; computed only where it is used, as everything here is inlined.
+    pub shear: Shear<L>,
 }
 
 impl<L: Lanes> RayLanes<L> {
@@ -35,9 +41,10 @@ impl<L: Lanes> RayLanes<L> {
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         Self {
-            origin: ray.origin.to_array().map(L::splat),
-            direction: ray.direction.to_array().map(L::splat),
+            origin: splat(ray.origin),
+            direction: splat(ray.direction),
             end: L::splat(ray.end),
+            shear: Shear::new(ray),
         }
     }
 }

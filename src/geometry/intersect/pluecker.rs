@@ -21,9 +21,9 @@ const EDGE_EPSILON: f32 = f32::EPSILON;
 
 impl TriangleTest for Pluecker {
     #[inline(always)]
-    fn claims<L: Lanes>(ray: &RayLanes<L>, corners: &[Vector<L>; 3]) -> Claims {
+    fn claims<L: Lanes>(ray: &RayLanes<L>, &[v0, v1, v2]: &[Vector<L>; 3]) -> Claims {
         let direction = ray.direction;
-        let [v0, v1, v2] = corners.map(|corner| sub(corner, ray.origin));
+        let (v0, v1, v2) = (sub(v0, ray.origin), sub(v1, ray.origin), sub(v2, ray.origin));
         let (e0, e1, e2) = (sub(v2, v0), sub(v0, v1), sub(v1, v2));
         let u = dot(cross(e0, add(v2, v0)), direction);
         let v = dot(cross(e1, add(v0, v1)), direction);
@@ -37,7 +37,6 @@ impl TriangleTest for Pluecker {
         }
         let zero = L::splat(0.0);
         let normal = stable_normal(e0, e1, e2);
-        let twice = |value: L| value.add(value);
         let den = twice(dot(normal, direction));
         let t = den.reciprocal().mul(twice(dot(v0, normal)));
         let within = L::and(zero.less_equal(t), t.less_equal(ray.end));
@@ -53,11 +52,18 @@ impl TriangleTest for Pluecker {
 /// A normal whose coordinates each come from the pair of edges with the smaller products.
 #[inline(always)]
 fn stable_normal<L: Lanes>(a: Vector<L>, b: Vector<L>, c: Vector<L>) -> Vector<L> {
-    let coordinate = |i: usize, j: usize| {
-        let (ab, bc) = (a[j].mul(b[i]), b[j].mul(c[i]));
-        let cross_ab = a[i].mul_sub(b[j], ab);
-        let cross_bc = b[i].mul_sub(c[j], bc);
-        L::select(ab.abs().less(bc.abs()), cross_ab, cross_bc)
-    };
-    [coordinate(1, 2), coordinate(2, 0), coordinate(0, 1)]
+    [coordinate(a, b, c, 1, 2), coordinate(a, b, c, 2, 0), coordinate(a, b, c, 0, 1)]
+}
+
+#[inline(always)]
+fn coordinate<L: Lanes>(a: Vector<L>, b: Vector<L>, c: Vector<L>, i: usize, j: usize) -> L {
+    let (ab, bc) = (a[j].mul(b[i]), b[j].mul(c[i]));
+    let cross_ab = a[i].mul_sub(b[j], ab);
+    let cross_bc = b[i].mul_sub(c[j], bc);
+    L::select(ab.abs().less(bc.abs()), cross_ab, cross_bc)
+}
+
+#[inline(always)]
+fn twice<L: Lanes>(value: L) -> L {
+    value.add(value)
 }

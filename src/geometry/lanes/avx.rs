@@ -7,7 +7,7 @@ use std::arch::x86_64::*;
 
 use glam::Vec3A;
 
-use super::Lanes;
+use super::{Kernel, Lanes};
 use crate::geometry::TriangleId;
 
 /// Eight f32. `RCP14`: the reciprocal of AVX-512, else that of AVX.
@@ -19,6 +19,11 @@ impl<const RCP14: bool> Lanes for Avx<RCP14> {
     type Mask = __m256;
 
     #[inline(always)]
+    fn run<K: Kernel>(kernel: K) -> K::Answer {
+        // SAFETY: see the head of this file.
+        unsafe { if RCP14 { run_avx512(kernel) } else { run_avx2(kernel) } }
+    }
+    #[inline(always)]
     fn splat(value: f32) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm256_set1_ps(value) })
@@ -28,24 +33,7 @@ impl<const RCP14: bool> Lanes for Avx<RCP14> {
         let last = ids.len() - 1;
         let triangle = |lane: usize| &corners[ids[lane.min(last)] as usize];
         let rows: [&[Vec3A; 3]; 8] = std::array::from_fn(triangle);
-        // Transposes 8 rows of (x, y, z, _) into x, y and z, by halves of 128 bits.
-        [0, 1, 2].map(|corner| {
-            // SAFETY: see the head of this file.
-            unsafe {
-                let pair = |i: usize| {
-                    let low = _mm256_castps128_ps256(rows[i][corner].into());
-                    _mm256_insertf128_ps::<1>(low, rows[i + 4][corner].into())
-                };
-                let (r0, r1, r2, r3) = (pair(0), pair(1), pair(2), pair(3));
-                let (xy01, z01) = (_mm256_unpacklo_ps(r0, r1), _mm256_unpackhi_ps(r0, r1));
-                let (xy23, z23) = (_mm256_unpacklo_ps(r2, r3), _mm256_unpackhi_ps(r2, r3));
-                [
-                    Self(_mm256_shuffle_ps::<0x44>(xy01, xy23)),
-                    Self(_mm256_shuffle_ps::<0xEE>(xy01, xy23)),
-                    Self(_mm256_shuffle_ps::<0x44>(z01, z23)),
-                ]
-            }
-        })
+        [transpose(rows, 0), transpose(rows, 1), transpose(rows, 2)]
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -135,5 +123,42 @@ impl<const RCP14: bool> Lanes for Avx<RCP14> {
     fn bits(mask: __m256) -> u32 {
         // SAFETY: see the head of this file.
         unsafe { _mm256_movemask_ps(mask) as u32 }
+    }
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn run_avx2<K: Kernel>(kernel: K) -> K::Answer {
+    kernel.run()
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn run_avx512<K: Kernel>(kernel: K) -> K::Answer {
+    kernel.run()
+}
+
+/// 8 rows of (x, y, z, _) as x, y and z, by halves of 128 bits.
+#[inline(always)]
+fn transpose<const RCP14: bool>(rows: [&[Vec3A; 3]; 8], corner: usize) -> [Avx<RCP14>; 3] {
+    // SAFETY: see the head of this file.
+    unsafe {
+        let (r0, r1) = (pair(rows, corner, 0), pair(rows, corner, 1));
+        let (r2, r3) = (pair(rows, corner, 2), pair(rows, corner, 3));
+        let (xy01, z01) = (_mm256_unpacklo_ps(r0, r1), _mm256_unpackhi_ps(r0, r1));
+        let (xy23, z23) = (_mm256_unpacklo_ps(r2, r3), _mm256_unpackhi_ps(r2, r3));
+        [
+            Avx(_mm256_shuffle_ps::<0x44>(xy01, xy23)),
+            Avx(_mm256_shuffle_ps::<0xEE>(xy01, xy23)),
+            Avx(_mm256_shuffle_ps::<0x44>(z01, z23)),
+        ]
+    }
+}
+
+/// Rows `i` and `i + 4` in one register.
+#[inline(always)]
+fn pair(rows: [&[Vec3A; 3]; 8], corner: usize, i: usize) -> __m256 {
+    // SAFETY: see the head of this file.
+    unsafe {
+        let low = _mm256_castps128_ps256(rows[i][corner].into());
+        _mm256_insertf128_ps::<1>(low, rows[i + 4][corner].into())
     }
 }

@@ -7,7 +7,12 @@
 //! What does differ between instruction sets is arithmetic itself: whether `a·b + c` is rounded once
 //! or twice, and which table approximates `1/x`. Embree's kernels differ in just that way, and the
 //! tests that reproduce Embree bit for bit must choose: [`Arithmetic`] names the three variants.
-//! Tests that are certified (`exact`) do not use either operation.
+//! Tests that are certified (`exact`) may round otherwise, but answer alike.
+//!
+//! **Closures and the instruction set.** A closure is compiled on its own, without the instruction set
+//! of the function that it stands in, and then each operation in it is a call (20 times slower,
+//! measured). So code over [`Lanes`] is written without closures, `map` and `from_fn` over lanes included;
+//! and where a kernel is reached through somebody else's closure, it goes through [`Lanes::run`].
 
 #[cfg(target_arch = "x86_64")]
 mod avx;
@@ -15,7 +20,7 @@ mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod sse;
 
-use glam::Vec3A;
+use glam::{Vec3, Vec3A};
 
 pub use scalar::Scalar;
 
@@ -26,13 +31,23 @@ pub(crate) use sse::Sse;
 
 use super::TriangleId;
 
-/// `LANES` values of f32 that are computed with together.
+/// Something to be compiled for the instruction set of some lanes.
+pub trait Kernel {
+    /// What it gives.
+    type Answer;
+    /// Does it; to be marked `#[inline(always)]`.
+    fn run(self) -> Self::Answer;
+}
+
+/// Values of f32 that are computed with together.
 pub trait Lanes: Copy {
     /// How many.
     const COUNT: usize;
     /// The result of a comparison, a truth value a lane.
     type Mask: Copy;
 
+    /// Runs a kernel, compiled for the instruction set of these lanes.
+    fn run<K: Kernel>(kernel: K) -> K::Answer;
     /// The same value in every lane.
     fn splat(value: f32) -> Self;
     /// The corners of up to `COUNT` triangles, as coordinates of each corner; unused lanes repeat
@@ -76,6 +91,12 @@ pub trait Lanes: Copy {
 
 /// Three coordinates, a lane a triangle.
 pub type Vector<L> = [L; 3];
+
+/// The same vector in every lane.
+#[inline(always)]
+pub fn splat<L: Lanes>(vector: Vec3) -> Vector<L> {
+    [L::splat(vector.x), L::splat(vector.y), L::splat(vector.z)]
+}
 
 /// `a − b`.
 #[inline(always)]

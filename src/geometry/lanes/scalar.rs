@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 
-use super::Lanes;
+use super::{Kernel, Lanes};
 use crate::geometry::TriangleId;
 
 /// One f32 with the arithmetic of a lane: `FUSED` multiply-add or not, and, where `FUSED`, the
@@ -14,6 +14,10 @@ impl<const FUSED: bool, const RCP14: bool> Lanes for Scalar<FUSED, RCP14> {
     const COUNT: usize = 1;
     type Mask = bool;
 
+    #[inline(always)]
+    fn run<K: Kernel>(kernel: K) -> K::Answer {
+        kernel.run()
+    }
     #[inline(always)]
     fn splat(value: f32) -> Self {
         Self(value)

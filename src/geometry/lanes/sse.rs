@@ -6,7 +6,7 @@ use std::arch::x86_64::*;
 
 use glam::Vec3A;
 
-use super::Lanes;
+use super::{Kernel, Lanes};
 use crate::geometry::TriangleId;
 
 /// Four f32, multiply-add rounded twice.
@@ -18,6 +18,10 @@ impl Lanes for Sse {
     type Mask = __m128;
 
     #[inline(always)]
+    fn run<K: Kernel>(kernel: K) -> K::Answer {
+        kernel.run()
+    }
+    #[inline(always)]
     fn splat(value: f32) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm_set1_ps(value) })
@@ -27,20 +31,7 @@ impl Lanes for Sse {
         let last = ids.len() - 1;
         let triangle = |lane: usize| &corners[ids[lane.min(last)] as usize];
         let rows: [&[Vec3A; 3]; 4] = std::array::from_fn(triangle);
-        // Transposes 4 rows of (x, y, z, _) into x, y and z.
-        [0, 1, 2].map(|corner| {
-            let [r0, r1, r2, r3]: [__m128; 4] = rows.map(|row| row[corner].into());
-            // SAFETY: see the head of this file.
-            unsafe {
-                let (xy01, z01) = (_mm_unpacklo_ps(r0, r1), _mm_unpackhi_ps(r0, r1));
-                let (xy23, z23) = (_mm_unpacklo_ps(r2, r3), _mm_unpackhi_ps(r2, r3));
-                [
-                    Self(_mm_shuffle_ps::<0x44>(xy01, xy23)),
-                    Self(_mm_shuffle_ps::<0xEE>(xy01, xy23)),
-                    Self(_mm_shuffle_ps::<0x44>(z01, z23)),
-                ]
-            }
-        })
+        [transpose(rows, 0), transpose(rows, 1), transpose(rows, 2)]
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -125,5 +116,22 @@ impl Lanes for Sse {
     fn bits(mask: __m128) -> u32 {
         // SAFETY: see the head of this file.
         unsafe { _mm_movemask_ps(mask) as u32 }
+    }
+}
+
+/// 4 rows of (x, y, z, _) as x, y and z.
+#[inline(always)]
+fn transpose(rows: [&[Vec3A; 3]; 4], corner: usize) -> [Sse; 3] {
+    // SAFETY: see the head of this file.
+    unsafe {
+        let (r0, r1) = (rows[0][corner].into(), rows[1][corner].into());
+        let (r2, r3) = (rows[2][corner].into(), rows[3][corner].into());
+        let (xy01, z01) = (_mm_unpacklo_ps(r0, r1), _mm_unpackhi_ps(r0, r1));
+        let (xy23, z23) = (_mm_unpacklo_ps(r2, r3), _mm_unpackhi_ps(r2, r3));
+        [
+            Sse(_mm_shuffle_ps::<0x44>(xy01, xy23)),
+            Sse(_mm_shuffle_ps::<0xEE>(xy01, xy23)),
+            Sse(_mm_shuffle_ps::<0x44>(z01, z23)),
+        ]
     }
 }

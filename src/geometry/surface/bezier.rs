@@ -1,16 +1,22 @@
 //! Cubic Bézier curves, and sheets of bicubic Bézier patches: open ones, and closed bodies.
 
-use std::ops::{Add, Mul};
+use std::ops::{Add, Mul, Sub};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::{SecondDerivatives, Surface, Topology};
 
-/// A cubic Bézier curve in the plane or in space.
+/// What control points are: places in the plane or in space.
+pub trait Point: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> {}
+
+impl Point for DVec2 {}
+impl Point for DVec3 {}
+
+/// A cubic Bézier curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cubic<P>(pub [P; 4]);
 
-impl<P: Copy + Add<Output = P> + Mul<f64, Output = P>> Cubic<P> {
+impl<P: Point> Cubic<P> {
     /// The straight line from `a` to `b`, at constant speed.
     #[must_use]
     pub fn line(a: P, b: P) -> Self {
@@ -20,9 +26,7 @@ impl<P: Copy + Add<Output = P> + Mul<f64, Output = P>> Cubic<P> {
     /// The point at `t`; exactly an end point at 0 and 1.
     #[must_use]
     pub fn point(&self, t: f64) -> P {
-        let [a, b, c, d] = self.0;
-        let (ab, bc, cd) = (blend(a, b, t), blend(b, c, t), blend(c, d, t));
-        blend(blend(ab, bc, t), blend(bc, cd, t), t)
+        self.polar(t, t, t)
     }
 
     /// The derivative at `t`.
@@ -32,32 +36,114 @@ impl<P: Copy + Add<Output = P> + Mul<f64, Output = P>> Cubic<P> {
         blend(blend(a, b, t), blend(b, c, t), t)
     }
 
-    /// The control points of the derivative.
+    /// Control points of the derivative.
     #[must_use]
     pub fn differences(&self) -> [P; 3] {
-        [0, 1, 2].map(|i| (self.0[i + 1] + self.0[i] * -1.0) * 3.0)
+        [0, 1, 2].map(|i| (self.0[i + 1] - self.0[i]) * 3.0)
     }
 
-    /// The control points of the second derivative.
+    /// Control points of the second derivative.
     #[must_use]
     pub fn second_differences(&self) -> [P; 2] {
         let first = self.differences();
-        [0, 1].map(|i| (first[i + 1] + first[i] * -1.0) * 2.0)
+        [0, 1].map(|i| (first[i + 1] - first[i]) * 2.0)
+    }
+
+    /// The part of the curve from `from` to `to`.
+    #[must_use]
+    pub fn part(&self, from: f64, to: f64) -> Self {
+        let (start, end) = (self.polar(from, from, from), self.polar(to, to, to));
+        Self([start, self.polar(from, from, to), self.polar(from, to, to), end])
+    }
+
+    /// The polar form: the algorithm of de Casteljau with a parameter of its own for every step.
+    fn polar(&self, r: f64, s: f64, t: f64) -> P {
+        let [a, b, c, d] = self.0;
+        let (ab, bc, cd) = (blend(a, b, r), blend(b, c, r), blend(c, d, r));
+        blend(blend(ab, bc, s), blend(bc, cd, s), t)
     }
 }
 
 /// Between `a` at 0 and `b` at 1, both met exactly.
-fn blend<P: Add<Output = P> + Mul<f64, Output = P>>(a: P, b: P, t: f64) -> P {
+fn blend<P: Point>(a: P, b: P, t: f64) -> P {
     a * (1.0 - t) + b * t
+}
+
+/// A smooth curve of cubic Bézier pieces, all of equal length in its parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path<P> {
+    pieces: Vec<Cubic<P>>,
+}
+
+impl<P: Point> Path<P> {
+    /// The smooth curve through the points (Catmull & Rom 1974): its tangents are half the
+    /// difference of the neighbours. `before` and `after` are those of the ends, if they have any.
+    ///
+    /// # Panics
+    /// With fewer than two points.
+    #[must_use]
+    pub fn through(points: &[P], before: Option<P>, after: Option<P>) -> Self {
+        assert!(points.len() > 1, "a path needs two points");
+        let last = points.len() - 1;
+        let tangent = |i: usize| match (i, before, after) {
+            (0, None, _) => points[1] - points[0],
+            (0, Some(before), _) => (points[1] - before) * 0.5,
+            (_, _, None) if i == last => points[last] - points[last - 1],
+            (_, _, Some(after)) if i == last => (after - points[last - 1]) * 0.5,
+            _ => (points[i + 1] - points[i - 1]) * 0.5,
+        };
+        let pieces = (0..last).map(|i| {
+            let (a, b) = (points[i], points[i + 1]);
+            Cubic([a, a + tangent(i) * (1.0 / 3.0), b - tangent(i + 1) * (1.0 / 3.0), b])
+        });
+        Self { pieces: pieces.collect() }
+    }
+
+    /// The straight line from `a` to `b`.
+    #[must_use]
+    pub fn line(a: P, b: P) -> Self {
+        Self { pieces: vec![Cubic::line(a, b)] }
+    }
+
+    /// The pieces.
+    #[must_use]
+    pub fn pieces(&self) -> &[Cubic<P>] {
+        &self.pieces
+    }
+
+    /// The point at `t` from 0 to 1.
+    #[must_use]
+    pub fn point(&self, t: f64) -> P {
+        let (index, place) = piece(t, self.pieces.len());
+        self.pieces[index].point(place)
+    }
+
+    /// The derivative at `t`.
+    #[must_use]
+    pub fn derivative(&self, t: f64) -> P {
+        let (index, place) = piece(t, self.pieces.len());
+        self.pieces[index].derivative(place) * self.pieces.len() as f64
+    }
+
+    /// All control points, one row.
+    fn controls(&self) -> Vec<P> {
+        let first = self.pieces[0].0[0];
+        [first].into_iter().chain(self.pieces.iter().flat_map(|p| p.0[1..].to_vec())).collect()
+    }
+}
+
+/// The piece of `count` equal ones that holds `t`, and the place of `t` in it.
+fn piece(t: f64, count: usize) -> (usize, f64) {
+    let scaled = t * count as f64;
+    let index = (scaled.max(0.0) as usize).min(count - 1);
+    (index, scaled - index as f64)
 }
 
 /// How far from a pole of a body its normal is taken.
 const BESIDE_POLE: f64 = 1e-5;
 
-/// Bicubic Bézier patches that pass smoothly through a grid of given points.
-///
-/// Tangents are half the difference of the neighbours (Catmull & Rom 1974), so that patches meet
-/// with a common tangent plane.
+/// Bicubic Bézier patches that pass smoothly through a grid of given points, as a [`Path`] does
+/// through a row of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
     /// Control points, `3·patches + 1` each way, u running fastest.
@@ -76,7 +162,8 @@ impl Sheet {
     #[must_use]
     pub fn through(rows: &[Vec<DVec3>]) -> Self {
         assert!(rows.len() > 1 && rows[0].len() > 1, "a sheet needs two rows and two columns");
-        let rows: Vec<_> = rows.iter().map(|row| smooth_controls(row, None, None)).collect();
+        let rows: Vec<_> =
+            rows.iter().map(|row| Path::through(row, None, None).controls()).collect();
         Self::along_columns(&rows, false)
     }
 
@@ -88,13 +175,14 @@ impl Sheet {
     #[must_use]
     pub fn body(first: DVec3, loops: &[Vec<DVec3>], last: DVec3) -> Self {
         let points = loops[0].len();
-        assert!(points % 2 == 0, "every point of a loop needs an opposite one");
+        assert!(points.is_multiple_of(2), "every point of a loop needs an opposite one");
         let controls = 3 * points + 1;
         let mut rows = vec![vec![first; controls]];
         for around in loops {
             let mut around = around.clone();
             around.push(around[0]);
-            rows.push(smooth_controls(&around, Some(around[points - 1]), Some(around[1])));
+            let (before, after) = (Some(around[points - 1]), Some(around[1]));
+            rows.push(Path::through(&around, before, after).controls());
         }
         rows.push(vec![last; controls]);
         Self::along_columns(&rows, true)
@@ -109,7 +197,7 @@ impl Sheet {
             // Over a pole a column goes on as the opposite one, so the pole is round, not a tip.
             let opposite = (u + (width - 1) / 2) % (width - 1);
             let beyond = |row: usize| is_body.then(|| rows[row][opposite]);
-            let smooth = smooth_controls(&column, beyond(1), beyond(rows.len() - 2));
+            let smooth = Path::through(&column, beyond(1), beyond(rows.len() - 2)).controls();
             for (v, point) in smooth.into_iter().enumerate() {
                 control[v * width + u] = point;
             }
@@ -186,40 +274,4 @@ impl Surface for Sheet {
         let closed = self.is_body;
         Topology { closed_u: closed, pole_at_start: closed, pole_at_end: closed }
     }
-
-    fn pieces(&self) -> (usize, usize) {
-        self.patches
-    }
-}
-
-/// The piece of `count` equal ones that holds `t`, and the place of `t` in it.
-pub(super) fn piece(t: f64, count: usize) -> (usize, f64) {
-    let scaled = t * count as f64;
-    let index = (scaled.max(0.0) as usize).min(count - 1);
-    (index, scaled - index as f64)
-}
-
-/// Control points of the smooth curve through `points`; `before` and `after` are the neighbours that
-/// its ends take their tangents from, if there are any.
-pub(super) fn smooth_controls(
-    points: &[DVec3],
-    before: Option<DVec3>,
-    after: Option<DVec3>,
-) -> Vec<DVec3> {
-    let last = points.len() - 1;
-    let tangent = |i: usize| match (i, before, after) {
-        (0, None, _) => points[1] - points[0],
-        (0, Some(before), _) => (points[1] - before) * 0.5,
-        (_, _, None) if i == last => points[last] - points[last - 1],
-        (_, _, Some(after)) if i == last => (after - points[last - 1]) * 0.5,
-        _ => (points[i + 1] - points[i - 1]) * 0.5,
-    };
-    let mut controls = Vec::with_capacity(3 * last + 1);
-    for i in 0..last {
-        controls.push(points[i]);
-        controls.push(points[i] + tangent(i) / 3.0);
-        controls.push(points[i + 1] - tangent(i + 1) / 3.0);
-    }
-    controls.push(points[last]);
-    controls
 }

@@ -2,11 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-/// How far the inner control points of a cubic Bézier quarter circle lie along its end tangents, in
-/// radii: 4/3·(√2 − 1). The curve leaves the circle by less than 0.03 % of the radius.
-pub const CIRCLE_HANDLE: f64 = 0.552_284_749_830_793_4;
-
-/// Taylor coefficients −1/(2k−1)(2k) of the next term over the last one, times x².
+/// Terms of the Taylor series.
 const TERMS: usize = 9;
 
 /// Cosine and sine of a fraction of a full turn.

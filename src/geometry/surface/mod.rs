@@ -9,11 +9,13 @@ mod circle;
 mod revolution;
 mod sweep;
 mod tessellate;
+#[cfg(test)]
+mod tests;
 
-pub use bezier::{Cubic, Sheet};
-pub use circle::{CIRCLE_HANDLE, cosine_and_sine};
+pub use bezier::{Cubic, Path, Point, Sheet};
+pub use circle::cosine_and_sine;
 pub use revolution::Revolution;
-pub use sweep::{Path, Tube};
+pub use sweep::Tube;
 pub use tessellate::{Mesh, Resolution, tessellate, triangle_count};
 
 use glam::DVec3;
@@ -26,17 +28,12 @@ pub trait Surface {
     /// The unit normal at (u, v), on the side of ∂u × ∂v.
     fn normal(&self, u: f64, v: f64) -> DVec3;
 
-    /// Bounds of the second derivatives, from which the tessellator takes its resolution.
+    /// Bounds of the second derivatives, which may jump but not the first ones; the
+    /// tessellator takes its resolution.
     fn second_derivatives(&self) -> SecondDerivatives;
 
     /// Which of its edges are one.
     fn topology(&self) -> Topology;
-
-    /// Smooth pieces in u and v: a resolution is a multiple of them, so that no triangle crosses
-    /// the seam between two pieces.
-    fn pieces(&self) -> (usize, usize) {
-        (1, 1)
-    }
 }
 
 /// Upper bounds of the lengths of a surface's second derivatives over its pieces.

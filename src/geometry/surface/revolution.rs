@@ -1,19 +1,35 @@
-//! Surfaces of revolution: a cubic Bézier profile turned around the Y axis.
+//! Surfaces of revolution: a profile turned around the Y axis.
 
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::{Cubic, SecondDerivatives, Surface, Topology, cosine_and_sine};
+use super::{Path, SecondDerivatives, Surface, Topology, cosine_and_sine};
 
 /// A profile of (radius, height) turned around the Y axis: u is the angle, v runs along the profile.
 ///
-/// A profile that climbs has its normal outwards. An end of radius zero is a pole; the profile
-/// should meet the axis at a right angle there, or the pole is a tip.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A profile that climbs has its normal outwards.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Revolution {
-    /// The profile.
-    pub profile: Cubic<DVec2>,
+    profile: Path<DVec2>,
+}
+
+impl Revolution {
+    /// The smooth surface whose profile passes through the points. An end of radius zero is a round
+    /// pole.
+    ///
+    /// # Panics
+    /// With fewer than two points.
+    #[must_use]
+    pub fn through(points: &[DVec2]) -> Self {
+        // Over the axis a profile goes on as its mirror image.
+        let beyond =
+            |pole: DVec2, next: DVec2| (pole.x == 0.0).then(|| DVec2::new(-next.x, next.y));
+        let last = points.len() - 1;
+        let (before, after) =
+            (beyond(points[0], points[1]), beyond(points[last], points[last - 1]));
+        Self { profile: Path::through(points, before, after) }
+    }
 }
 
 impl Surface for Revolution {
@@ -30,21 +46,26 @@ impl Surface for Revolution {
     }
 
     fn second_derivatives(&self) -> SecondDerivatives {
+        let pieces = self.profile.pieces();
+        let count = pieces.len() as f64;
         // A Bézier curve stays within the range of its control points.
-        let widest = |values: &[DVec2]| values.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
-        let bend = self.profile.second_differences().map(DVec2::length);
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let radius = largest(&mut pieces.iter().flat_map(|p| p.0).map(|p| p.x.abs()));
+        let slope = largest(&mut pieces.iter().flat_map(|p| p.differences()).map(|d| d.x.abs()));
+        let bend =
+            largest(&mut pieces.iter().flat_map(|p| p.second_differences()).map(DVec2::length));
         SecondDerivatives {
-            uu: TAU * TAU * widest(&self.profile.0),
-            uv: TAU * widest(&self.profile.differences()),
-            vv: bend[0].max(bend[1]),
+            uu: TAU * TAU * radius,
+            uv: TAU * slope * count,
+            vv: bend * count * count,
         }
     }
 
     fn topology(&self) -> Topology {
         Topology {
             closed_u: true,
-            pole_at_start: self.profile.0[0].x == 0.0,
-            pole_at_end: self.profile.0[3].x == 0.0,
+            pole_at_start: self.profile.point(0.0).x == 0.0,
+            pole_at_end: self.profile.point(1.0).x == 0.0,
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::Surface;
+use super::{Surface, Topology};
 
 /// Cells of the parameter grid along u and v.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,23 +24,26 @@ impl Resolution {
     /// Over a cell of sides a and b that error is at most ⅛(a²·Suu + 2ab·Suv + b²·Svv), with bounds
     /// S of the second derivatives (Filip, Magedson & Markot 1986); 2ab ≤ a² + b² parts the cell's
     /// sides, and each gets half of the tolerance.
+    ///
+    /// # Panics
+    /// If the surface has a cusp, which no bound holds.
     #[must_use]
     pub fn for_tolerance(surface: &impl Surface, tolerance: f64) -> Self {
         let bounds = surface.second_derivatives();
-        let cells = |bound: f64| (0.5 * (bound / tolerance).sqrt()).ceil() as usize;
+        let cells = |bound: f64| {
+            assert!(bound.is_finite(), "a surface with a cusp has no resolution for a tolerance");
+            (0.5 * (bound / tolerance).sqrt()).ceil() as usize
+        };
         Self { u: cells(bounds.uu + bounds.uv), v: cells(bounds.vv + bounds.uv) }.fitting(surface)
     }
 
-    /// The resolution that the surface needs at least, and a multiple of its pieces.
+    /// This resolution, or the least that the surface needs.
     #[must_use]
     pub fn fitting(self, surface: &impl Surface) -> Self {
-        let (topology, pieces) = (surface.topology(), surface.pieces());
-        let poles = topology.pole_at_start && topology.pole_at_end;
-        let least_u = if topology.closed_u { 3 } else { 1 };
-        let least_v = if poles { 2 } else { 1 };
+        let Topology { closed_u, pole_at_start, pole_at_end } = surface.topology();
         Self {
-            u: self.u.max(least_u).next_multiple_of(pieces.0),
-            v: self.v.max(least_v).next_multiple_of(pieces.1),
+            u: self.u.max(if closed_u { 3 } else { 1 }),
+            v: self.v.max(if pole_at_start && pole_at_end { 2 } else { 1 }),
         }
     }
 }

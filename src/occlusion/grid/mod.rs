@@ -1,7 +1,9 @@
-//! The uniform grid: voxels with lists of triangles, walked in order along the ray.
+//! The grid: voxels with lists of triangles, walked in order along the ray.
 //!
-//! Fast to build, and its voxels are the neighbourhoods that the paper's caches remember. Weak where
-//! detail is uneven: one resolution serves the whole scene.
+//! A uniform grid is fast to build, and its voxels are the neighbourhoods that the paper's caches
+//! remember; but one resolution cannot serve a scene with uneven detail. So a voxel that is crowded is
+//! divided by a grid of its own, and so on (adaptive voxel subdivision, Jevans & Wyvill 1989), unless a
+//! plain uniform grid is asked for.
 //!
 //! Exact, because nothing is lost: a triangle is listed in every voxel that it comes within
 //! [`PADDING`] of a voxel's side of (`voxelize`), and the walk errs by much less (`walk`): wherever
@@ -9,53 +11,57 @@
 //!
 //! Fujimoto, Tanaka, Iwata: ARTS: Accelerated Ray-Tracing System. IEEE CG&A 6(4), 1986.
 //! Amanatides, Woo: A Fast Voxel Traversal Algorithm for Ray Tracing. Eurographics 1987.
+//! Jevans, Wyvill: Adaptive Voxel Subdivision for Ray Tracing. Graphics Interface 1989.
 
+mod build;
+mod level;
 mod voxelize;
 mod walk;
 
 use glam::DVec3;
+use level::{Content, Level};
 
 use super::clip::padding;
 use super::{Cell, Visit, Walk};
-use crate::geometry::{Bounds, Ray, TriangleId, Triangles};
+use crate::geometry::{Ray, TriangleId, Triangles};
 
 /// How far outside a voxel its triangles may be, as a part of its side.
 const PADDING: f64 = 1.0 / 1024.0;
 
-/// Voxels to a triangle, where nothing else is asked for.
-const DEFAULT_DENSITY: f64 = 4.0;
+/// Voxels to a triangle of a plain uniform grid, where nothing else is asked for.
+const UNIFORM_DENSITY: f64 = 4.0;
+
+/// Voxels to a triangle of the outermost grid where crowded voxels are divided.
+const NESTED_DENSITY: f64 = 1.0;
 
 /// Most voxels along one axis.
 const MOST_VOXELS: f64 = 1024.0;
 
 /// How finely the grid divides the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum GridOptions {
-    /// About this many voxels to a triangle, as near to cubes as the scene's box allows.
-    Density(f64),
-    /// This many voxels along x, y and z.
-    Resolution([u32; 3]),
+pub struct GridOptions {
+    /// Voxels along x, y and z of the outermost grid; if none are given, a number that suits the number
+    /// of triangles, as near to cubes as the scene's box allows.
+    pub resolution: Option<[u32; 3]>,
+    /// Whether crowded voxels are divided.
+    pub nested: bool,
 }
 
 impl Default for GridOptions {
     fn default() -> Self {
-        Self::Density(DEFAULT_DENSITY)
+        Self { resolution: None, nested: true }
     }
 }
 
-/// A uniform grid over the triangles' box.
+/// A grid over the triangles' box, and grids in its crowded voxels.
 pub struct Grid {
-    /// Lower corner of voxel (0, 0, 0).
     min: DVec3,
-    /// Upper corner of the last voxel.
     max: DVec3,
-    /// Sides of a voxel, and their inverses.
-    side: DVec3,
-    inverse_side: DVec3,
-    /// How far outside a voxel its triangles may be.
-    pad: f64,
-    resolution: [u32; 3],
-    /// Where in `order` the triangles of each voxel start; one more than there are voxels.
+    /// The outermost grid first.
+    levels: Vec<Level>,
+    /// The voxels of all levels.
+    voxels: Vec<Content>,
+    /// Where in `order` each list starts; one more than there are lists.
     starts: Vec<u32>,
     order: Vec<TriangleId>,
 }
@@ -68,70 +74,62 @@ impl Grid {
     #[must_use]
     pub fn new(triangles: &Triangles, options: GridOptions) -> Self {
         let bounds = triangles.bounds().expect("there are triangles");
-        let resolution = resolution(&bounds, triangles.len(), options);
         let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
         // A flat scene gets a box with some depth, so that a voxel has a volume.
         let thickness = padding(&bounds, extent.max_element() * PADDING / MOST_VOXELS);
         let (min, max) = (bounds.min.as_dvec3() - thickness, bounds.max.as_dvec3() + thickness);
-        let side = (max - min) / DVec3::from(resolution.map(f64::from));
-        let mut grid = Self {
-            min,
-            max,
-            side,
-            inverse_side: side.recip(),
-            pad: padding(&bounds, side.min_element() * PADDING),
-            resolution,
-            starts: Vec::new(),
-            order: Vec::new(),
+        let density = if options.nested { NESTED_DENSITY } else { UNIFORM_DENSITY };
+        let resolution = match options.resolution {
+            Some(resolution) => resolution.map(|n| n.clamp(1, MOST_VOXELS as u32)),
+            None => resolution(max - min, density * triangles.len() as f64),
         };
-        (grid.starts, grid.order) = voxelize::voxelize(&grid, triangles);
-        grid
+        build::build(triangles, Level::new(min, max, resolution, &bounds), options.nested)
     }
 
-    /// Voxels along x, y and z.
+    /// Voxels along x, y and z of the outermost grid.
     #[must_use]
     pub fn resolution(&self) -> [u32; 3] {
-        self.resolution
+        self.levels[0].resolution
     }
 
-    /// Number of voxels.
+    /// Number of voxels, those of nested grids included.
     #[must_use]
     pub fn voxel_count(&self) -> usize {
-        self.starts.len() - 1
+        self.voxels.len()
     }
 
-    /// The triangles of a voxel.
-    #[inline(always)]
-    fn cell(&self, voxel: usize) -> Cell {
-        Cell { start: self.starts[voxel], end: self.starts[voxel + 1] }
+    /// Number of grids: one, and those in crowded voxels.
+    #[must_use]
+    pub fn grid_count(&self) -> usize {
+        self.levels.len()
     }
 
-    /// The voxel that holds a point of the scene's box; the nearest one for a point outside.
+    /// The innermost voxel that holds a point of the scene's box; the nearest one for a point outside.
     #[must_use]
     pub fn cell_at(&self, point: DVec3) -> Cell {
-        let [x, y, z] = self.voxel_of(point);
-        self.cell(self.index(x, y, z))
+        let mut level = &self.levels[0];
+        loop {
+            let content = self.voxels[level.index(level.voxel_of(point))];
+            match content.nested() {
+                Some(nested) => level = &self.levels[nested],
+                None => return self.cell(content),
+            }
+        }
     }
 
+    /// The list of a voxel that is not divided.
     #[inline(always)]
-    fn voxel_of(&self, point: DVec3) -> [u32; 3] {
-        let place = (point - self.min) * self.inverse_side;
-        std::array::from_fn(|axis| {
-            // `as` saturates, and takes NaN to 0.
-            (place[axis] as u32).min(self.resolution[axis] - 1)
-        })
-    }
-
-    #[inline(always)]
-    fn index(&self, x: u32, y: u32, z: u32) -> usize {
-        let [width, height, _] = self.resolution.map(|n| n as usize);
-        x as usize + width * (y as usize + height * z as usize)
+    fn cell(&self, content: Content) -> Cell {
+        match content.list() {
+            Some(list) => Cell { start: self.starts[list], end: self.starts[list + 1] },
+            None => Cell::default(),
+        }
     }
 }
 
 impl Walk for Grid {
     #[inline(always)]
-    fn walk<V: Visit>(&self, ray: &Ray, visitor: &mut V) {
+    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
         walk::walk(self, ray, visitor);
     }
 
@@ -140,20 +138,17 @@ impl Walk for Grid {
     }
 
     fn memory(&self) -> usize {
-        size_of_val(&*self.starts) + size_of_val(&*self.order)
+        size_of_val(&*self.levels)
+            + size_of_val(&*self.voxels)
+            + size_of_val(&*self.starts)
+            + size_of_val(&*self.order)
     }
 }
 
-/// Voxels along each axis.
-fn resolution(bounds: &Bounds, triangles: usize, options: GridOptions) -> [u32; 3] {
-    let density = match options {
-        GridOptions::Resolution(resolution) => return resolution.map(|n| n.clamp(1, 1024)),
-        GridOptions::Density(density) => density,
-    };
-    let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
-    // Thin scenes count as this thick, so that voxels stay near cubes.
+/// Voxels along each axis of a box, about as many in all as asked for.
+fn resolution(extent: DVec3, voxels: f64) -> [u32; 3] {
+    // Thin boxes count as this thick, so that voxels stay near cubes.
     let extent = extent.max(DVec3::splat(extent.max_element() / MOST_VOXELS));
-    let voxels = density * triangles as f64;
     let per_length = (voxels / extent.element_product()).cbrt();
     (extent * per_length).to_array().map(|n| n.ceil().clamp(1.0, MOST_VOXELS) as u32)
 }

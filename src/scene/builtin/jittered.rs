@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::{Random, memory};
+use super::{Random, check_memory};
 use crate::geometry::surface::cosine_and_sine;
 use crate::scene::{Camera, Draft, DraftTriangle, Light, Material, SceneError};
 
@@ -15,10 +15,14 @@ const SIDE: u64 = 41;
 const WALLS: u64 = 5;
 /// Triangles of each square and each wall.
 const TRIANGLES: f64 = 8.0;
-/// Standard deviation of the jitter, in units of its bounds; the paper does not say it.
-const DEVIATION: f64 = 0.5;
+/// Standard deviation of the jitter, in units of its bounds; the paper does not say it. At a third
+/// the bounds cut off three numbers in a thousand.
+const DEVIATION: f64 = 1.0 / 3.0;
 /// How far the walls are from the outermost lattice points: jitter 1 and half a diagonal 0.71 fit.
 const MARGIN: f64 = 2.0;
+/// Where lights begin and end along Z, in units of half the box.
+const NEAREST: f64 = 0.3;
+const FARTHEST: f64 = 1.9;
 /// Number of lights.
 const LIGHTS: usize = 15;
 
@@ -32,18 +36,29 @@ struct Cut {
 }
 
 impl Cut {
-    /// The cut for a multiple of the paper's triangles. A square has two triangles at least, so
-    /// below a quarter there are fewer squares in a smaller box instead.
+    /// The cut nearest to a multiple of the paper's triangles. A square has two triangles at least,
+    /// so below a quarter there are fewer squares in a smaller box instead.
     fn at(tessellation: f64) -> Self {
+        let nearest = |wanted: f64, candidates: &mut dyn Iterator<Item = (u64, u64)>| {
+            candidates
+                .min_by(|a, b| {
+                    let missed = |made: u64| (made as f64 - wanted).abs();
+                    missed(a.1).total_cmp(&missed(b.1))
+                })
+                .map_or(1, |candidate| candidate.0)
+        };
         let cells = 0.5 * TRIANGLES * tessellation;
         if cells < 1.0 {
-            let side = (1..SIDE).take_while(|side| {
-                ((side * side * side) as f64) <= cells * (SIDE * SIDE * SIDE) as f64
-            });
-            return Self { side: side.last().unwrap_or(1), cells: (1, 1) };
+            let squares = cells * SIDE.pow(3) as f64;
+            let side = nearest(squares, &mut (1..=SIDE).map(|side| (side, side.pow(3))));
+            return Self { side, cells: (1, 1) };
         }
-        let across = cells.sqrt().round().max(1.0);
-        Self { side: SIDE, cells: (across as u64, (cells / across).round().max(1.0) as u64) }
+        // As square as possible, but not at the cost of the number.
+        let square = cells.sqrt() as u64;
+        let along = |across: u64| (cells / across as f64).round() as u64;
+        let tried = (square.div_ceil(2)..=square).rev();
+        let across = nearest(cells, &mut tried.map(|across| (across, across * along(across))));
+        Self { side: SIDE, cells: (across, along(across)) }
     }
 
     fn triangles(self) -> u64 {
@@ -58,7 +73,7 @@ pub(super) fn triangle_count(tessellation: f64) -> u64 {
 /// The scene with squares of the given edge; the same jitter for every edge.
 pub(super) fn draft(name: &str, edge: f64, tessellation: f64) -> Result<Draft, SceneError> {
     let cut = Cut::at(tessellation);
-    memory::check(name, cut.triangles())?;
+    check_memory(name, cut.triangles())?;
     let mut draft = Draft {
         name: name.to_owned(),
         materials: materials(),
@@ -149,16 +164,22 @@ fn materials() -> Vec<Material> {
     squares.chain([wall]).collect()
 }
 
+/// Lights at random places across the box, in even steps along Z.
+///
+/// The paper does not say where they were. Lights deep in the box face few of the polygons that the
+/// camera sees, lights in front of it nearly all; this range gives the paper's ratio of rays between
+/// the sparse and the dense scene.
 fn lights(draft: &mut Draft, half: f64, random: &mut Random) {
-    let intensity = Vec3::splat((half * half * 0.25) as f32);
-    for _ in 0..LIGHTS {
-        let position = DVec3::from_array([0; 3].map(|_| half * (2.0 * random.uniform() - 1.0)));
-        draft.lights.push(Light::Point { position, intensity });
+    let intensity = Vec3::splat((0.36 * half * half) as f32);
+    for light in 0..LIGHTS {
+        let [x, y] = [0; 2].map(|_| random.uniform());
+        let z = (light as f64 + 0.5) / LIGHTS as f64;
+        let position = DVec3::new(2.0 * x - 1.0, 2.0 * y - 1.0, NEAREST + (FARTHEST - NEAREST) * z);
+        draft.lights.push(Light::Point { position: position * half, intensity });
     }
 }
 
-/// Looks straight in through the open front, which fills the picture.
+/// Looks in through the open front, from near enough that the walls are all around the picture.
 fn camera(half: f64) -> Camera {
-    let field_of_view = 0.75;
-    Camera::look_at(DVec3::Z * (2.8 * half), DVec3::ZERO, DVec3::Y, field_of_view)
+    Camera::look_at(DVec3::Z * (2.045 * half), DVec3::ZERO, DVec3::Y, 0.75)
 }

@@ -7,14 +7,13 @@
 mod chair_room;
 mod drum;
 mod jittered;
-mod memory;
 mod model;
 mod random;
 
-use model::{MaterialId, Model};
+use model::Model;
 use random::Random;
 
-use super::{Draft, SceneError};
+use super::{Draft, SceneError, memory};
 
 /// The scenes' names.
 pub const NAMES: &[&str] = &["jittered-sparse", "jittered-dense", "drum", "chair-room"];
@@ -70,12 +69,20 @@ pub fn draft_at(name: &str, tessellation: f64) -> Result<Draft, SceneError> {
             let describe = description(name).ok_or_else(unknown)?;
             let density = density(describe, tessellation);
             let count = counted(describe, density);
-            memory::check(name, count)?;
+            check_memory(name, count)?;
             let mut model = Model::new(name, density, false);
             describe(&mut model);
             Ok(model.draft)
         }
     }
+}
+
+/// Refuses what memory does not hold.
+fn check_memory(name: &str, triangles: u64) -> Result<(), SceneError> {
+    memory::check(triangles).map_err(|problem| SceneError::TooLarge {
+        name: name.to_owned(),
+        problem: format!("{problem}; take a smaller tessellation"),
+    })
 }
 
 /// How many triangles [`draft_at`] makes, without making them; `None` if no scene has that name.

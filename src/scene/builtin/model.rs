@@ -2,10 +2,11 @@
 //!
 //! The same description is run twice: once only to count triangles, once to make them.
 
-use glam::{DAffine3, DVec2, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3, Vec3};
 
 use crate::geometry::surface::{
-    Cubic, Mesh, Resolution, Revolution, Surface, tessellate, triangle_count,
+    Mesh, Path, Resolution, Revolution, SecondDerivatives, Surface, Topology, Tube,
+    cosine_and_sine, tessellate, triangle_count,
 };
 use crate::scene::{Draft, DraftTriangle, Material};
 
@@ -23,6 +24,9 @@ pub(super) struct Model {
 /// A material of a [`Model`].
 #[derive(Clone, Copy)]
 pub(super) struct MaterialId(u32);
+
+/// One smooth run of a profile of (radius, height), and its cells.
+pub(super) type Run<'a> = (&'a [(f64, f64)], usize);
 
 impl Model {
     /// An empty model whose resolutions are multiplied by `density`.
@@ -45,7 +49,7 @@ impl Model {
         material: MaterialId,
         place: DAffine3,
     ) {
-        let scaled = |cells: usize| (cells as f64 * self.density).round().max(1.0) as usize;
+        let scaled = |cells: usize| (cells as f64 * self.density).round() as usize;
         let resolution = Resolution { u: scaled(u), v: scaled(v) };
         self.count += triangle_count(surface, resolution);
         if !self.counting {
@@ -53,17 +57,49 @@ impl Model {
         }
     }
 
-    /// Adds the pieces of a profile turned around the Y axis, each with its cells along v.
+    /// Adds the runs of a profile turned around the Y axis, with an edge where two runs meet.
     pub(super) fn lathe(
         &mut self,
-        profile: &[(Cubic<DVec2>, usize)],
+        profile: &[Run],
         around: usize,
         material: MaterialId,
         place: DAffine3,
     ) {
-        for &(profile, along) in profile {
-            self.surface(&Revolution { profile }, (around, along), material, place);
+        for (points, along) in profile {
+            let points: Vec<_> = points.iter().map(|&point| DVec2::from(point)).collect();
+            self.surface(&Revolution::through(&points), (around, *along), material, place);
         }
+    }
+
+    /// Adds a ball.
+    pub(super) fn ball(
+        &mut self,
+        centre: DVec3,
+        radius: f64,
+        cells: (usize, usize),
+        material: MaterialId,
+    ) {
+        let profile = [-4, -3, -2, -1, 0, 1, 2, 3, 4].map(|eighth| {
+            let (cosine, sine) = cosine_and_sine(f64::from(eighth) / 16.0);
+            // The poles are exactly on the axis.
+            DVec2::new(radius * cosine, radius * sine)
+        });
+        let place = DAffine3::from_translation(centre);
+        self.surface(&Revolution::through(&profile), cells, material, place);
+    }
+
+    /// Adds a tube through the points; `side` is the normal of their plane, or nearly.
+    pub(super) fn tube(
+        &mut self,
+        points: &[DVec3],
+        radius: f64,
+        side: DVec3,
+        cells: (usize, usize),
+        material: MaterialId,
+        place: DAffine3,
+    ) {
+        let tube = Tube { path: Path::through(points, None, None), radius, side: side.normalize() };
+        self.surface(&tube, cells, material, place);
     }
 
     /// Adds a flat parallelogram; its front is on the side of `across` × `along`.
@@ -78,13 +114,30 @@ impl Model {
         self.surface(&Panel { corner, across, along }, cells, material, DAffine3::IDENTITY);
     }
 
+    /// Adds a box between two corners, two triangles a side.
+    pub(super) fn cuboid(
+        &mut self,
+        low: DVec3,
+        high: DVec3,
+        material: MaterialId,
+        place: DAffine3,
+    ) {
+        let size = high - low;
+        let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
+        let sides =
+            [(low, y, x), (low, z, y), (low, x, z), (high, -x, -y), (high, -y, -z), (high, -z, -x)];
+        for (corner, across, along) in sides {
+            self.surface(&Panel { corner, across, along }, (1, 1), material, place);
+        }
+    }
+
     fn mesh(&mut self, mesh: &Mesh, material: MaterialId, place: DAffine3) {
         let flat = mesh.normals.iter().all(|normal| *normal == mesh.normals[0]);
         let positions: Vec<_> = mesh.positions.iter().map(|p| place.transform_point3(*p)).collect();
         let normals: Vec<_> = mesh
             .normals
             .iter()
-            .map(|n| place.transform_vector3(*n).normalize().as_vec3())
+            .map(|normal| place.transform_vector3(*normal).normalize().as_vec3())
             .collect();
         self.draft.triangles.extend(mesh.triangles.iter().map(|triangle| {
             let [a, b, c] = triangle.map(|index| index as usize);
@@ -97,11 +150,27 @@ impl Model {
     }
 }
 
+/// Turned about the Y axis by a fraction of a turn, then moved.
+pub(super) fn turned(turns: f64, position: DVec3) -> DAffine3 {
+    let (cosine, sine) = cosine_and_sine(turns);
+    let x = DVec3::new(cosine, 0.0, -sine);
+    let z = DVec3::new(sine, 0.0, cosine);
+    DAffine3::from_mat3_translation(DMat3::from_cols(x, DVec3::Y, z), position)
+}
+
+/// The Y axis turned towards `direction`, then moved: for rods and what sits on them.
+pub(super) fn aimed(direction: DVec3, position: DVec3) -> DAffine3 {
+    let y = direction.normalize();
+    let across = if y.x * y.x < 0.5 { DVec3::X } else { DVec3::Z };
+    let z = across.cross(y).normalize();
+    DAffine3::from_mat3_translation(DMat3::from_cols(y.cross(z), y, z), position)
+}
+
 /// A flat parallelogram.
-pub(super) struct Panel {
-    pub(super) corner: DVec3,
-    pub(super) across: DVec3,
-    pub(super) along: DVec3,
+struct Panel {
+    corner: DVec3,
+    across: DVec3,
+    along: DVec3,
 }
 
 impl Surface for Panel {
@@ -113,11 +182,11 @@ impl Surface for Panel {
         self.across.cross(self.along).normalize()
     }
 
-    fn second_derivatives(&self) -> crate::geometry::surface::SecondDerivatives {
-        crate::geometry::surface::SecondDerivatives::default()
+    fn second_derivatives(&self) -> SecondDerivatives {
+        SecondDerivatives::default()
     }
 
-    fn topology(&self) -> crate::geometry::surface::Topology {
-        crate::geometry::surface::Topology::default()
+    fn topology(&self) -> Topology {
+        Topology::default()
     }
 }

@@ -147,24 +147,27 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
     let Some(bytes) = bytes.get(HEADER..length) else {
         return Err(format!("the GLB is cut short: {} bytes of {length}", bytes.len()));
     };
-    let (kind, json, rest) = chunk(bytes)?;
+    let ([kind, json], rest) = chunk(bytes)?;
     if kind != b"JSON" {
         return Err("the first chunk of the GLB is not JSON".to_owned());
     }
     let blob = match rest {
         [] => None,
-        _ => Some(chunk(rest)?).filter(|(kind, ..)| kind == b"BIN\0").map(|(_, blob, _)| blob),
+        _ => {
+            let ([kind, blob], _) = chunk(rest)?;
+            (kind == b"BIN\0").then_some(blob)
+        }
     };
     Ok((json, blob))
 }
 
 /// The kind and the content of the first chunk, and what follows it.
-fn chunk(bytes: &[u8]) -> Result<(&[u8], &[u8], &[u8]), Problem> {
+fn chunk(bytes: &[u8]) -> Result<([&[u8]; 2], &[u8]), Problem> {
     let cut = || "the GLB is cut short within a chunk".to_owned();
     let (header, rest) = bytes.split_at_checked(CHUNK_HEADER).ok_or_else(cut)?;
     let length = u32::from_le_bytes([header[0], header[1], header[2], header[3]]) as usize;
     let (content, rest) = rest.split_at_checked(length).ok_or_else(cut)?;
-    Ok((&header[4..], content, rest))
+    Ok(([&header[4..], content], rest))
 }
 
 /// The bytes of a buffer outside the file, or inside it in base 64.

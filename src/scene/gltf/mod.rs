@@ -20,9 +20,10 @@ use ::gltf::json::{
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::{
-    Camera, Draft, DraftTriangle, Light, SceneError, Surroundings,
+    Camera, Draft, DraftTriangle, Light, SceneError,
     load::{empty_draft, malformed, read_file},
-    material::from_extras,
+    material::{Surroundings, from_extras},
+    memory,
     placement::Placement,
 };
 use container::Container;
@@ -68,7 +69,9 @@ impl Reader<'_> {
             (None, []) => return Err("the file has no scene".to_owned()),
         };
         self.read_extras(scene);
-        self.draft.triangles.reserve(counts.below(&scene.nodes) as usize);
+        let count = counts.below(&scene.nodes);
+        memory::check(count)?;
+        self.draft.triangles.reserve(count as usize);
         let mut waiting: Vec<(usize, DAffine3)> =
             scene.nodes.iter().rev().map(|n| (n.value(), DAffine3::IDENTITY)).collect();
         while let Some((index, parent)) = waiting.pop() {

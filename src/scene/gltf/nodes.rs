@@ -85,7 +85,7 @@ impl Counts {
     }
 }
 
-/// Counts what every node holds; refuses cycles and more than fits a 32-bit index.
+/// Counts what every node holds; refuses cycles.
 pub(super) fn count_triangles(root: &Root) -> Result<Counts, Problem> {
     let mut counts: Vec<Option<Count>> = vec![None; root.nodes.len()];
     let mut on_path = vec![false; root.nodes.len()];
@@ -119,7 +119,8 @@ fn count_node(root: &Root, node: usize, counts: &[Option<Count>]) -> Result<Coun
     let mut count = Count { triangles: 0, placements: 1 };
     if let Some(mesh) = root.nodes[node].mesh {
         for primitive in &item(&root.meshes, mesh.value(), "mesh")?.primitives {
-            count.triangles += triangle_count(root, primitive)? as u64;
+            let triangles = triangle_count(root, primitive)? as u64;
+            count.triangles = count.triangles.saturating_add(triangles);
         }
     }
     for child in root.nodes[node].children.iter().flatten() {
@@ -127,13 +128,8 @@ fn count_node(root: &Root, node: usize, counts: &[Option<Count>]) -> Result<Coun
         count.triangles = count.triangles.saturating_add(below.triangles);
         count.placements = count.placements.saturating_add(below.placements);
     }
-    if count.triangles > u64::from(u32::MAX) || count.placements > MOST_PLACEMENTS {
-        return Err(format!(
-            "{} triangles in {} placed nodes are too many; umbra holds {} triangles",
-            count.triangles,
-            count.placements,
-            u32::MAX
-        ));
+    if count.placements > MOST_PLACEMENTS {
+        return Err(format!("{} placed nodes are too many", count.placements));
     }
     Ok(count)
 }

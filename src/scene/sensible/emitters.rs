@@ -20,6 +20,8 @@ pub(super) struct Emitters {
     pub(super) lights: Vec<Light>,
     /// How many emissive surfaces there are.
     pub(super) surfaces: usize,
+    /// Their share of the area of all surfaces.
+    pub(super) share: f64,
 }
 
 /// One connected emissive surface.
@@ -40,10 +42,15 @@ struct Surface {
 pub(super) fn lights(scene: &Scene) -> Emitters {
     let mut surfaces = surfaces(scene);
     surfaces.sort_by(|a, b| b.power.element_sum().total_cmp(&a.power.element_sum()));
-    let middle = middle(scene);
+    if surfaces.is_empty() {
+        return Emitters { lights: Vec::new(), surfaces: 0, share: 0.0 };
+    }
+    let everything = everything(scene);
+    let middle = everything.centre();
     Emitters {
         lights: surfaces.iter().take(MOST).map(|surface| surface.light(middle)).collect(),
         surfaces: surfaces.len(),
+        share: surfaces.iter().map(|surface| surface.area).sum::<f64>() / everything.area,
     }
 }
 
@@ -58,9 +65,13 @@ impl Surface {
         self.corners.extend(corners);
     }
 
+    fn centre(&self) -> DVec3 {
+        self.weighted / self.area
+    }
+
     /// Just outside the surface, on the side where the middle of the scene is.
     fn light(&self, middle: DVec3) -> Light {
-        let centre = self.weighted / self.area;
+        let centre = self.centre();
         let inwards = (middle - centre).normalize_or(DVec3::NEG_Y);
         // A closed surface, such as a bulb, has no normal.
         let ahead = if self.normal.length() > 0.1 * self.area {
@@ -76,14 +87,14 @@ impl Surface {
     }
 }
 
-/// The area-weighted middle of all surfaces.
-fn middle(scene: &Scene) -> DVec3 {
+/// All triangles as one surface.
+fn everything(scene: &Scene) -> Surface {
     let mut all = Surface::default();
     for id in 0..scene.triangles.len() as TriangleId {
         all.add(scene.triangles.get(id).map(|corner| corner.as_dvec3()), Vec3::ZERO);
         all.corners.clear();
     }
-    all.weighted / all.area
+    all
 }
 
 /// Emissive triangles, joined where they share a corner.

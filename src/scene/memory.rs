@@ -2,37 +2,37 @@
 
 use std::fs;
 
-use crate::geometry::Triangle;
-use crate::scene::{DraftTriangle, SceneError};
+use glam::{Vec3, Vec3A};
 
-/// Bytes that one triangle takes while a draft becomes a scene: the draft, the checked copy that is
-/// sorted (with room for the sort), and the same again for what a backend builds over it.
-const BYTES_PER_TRIANGLE: u64 = (size_of::<DraftTriangle>()
-    + 3 * (size_of::<Triangle>() + size_of::<DraftTriangle>()) / 2
-    + 2 * size_of::<Triangle>()) as u64;
+use super::DraftTriangle;
+
+/// Bytes that one triangle takes while a draft becomes a scene: the draft, the padded corners, the
+/// normals, and as much again for what a backend builds over it.
+const BYTES_PER_TRIANGLE: u64 =
+    2 * (size_of::<DraftTriangle>() + size_of::<[Vec3A; 3]>() + size_of::<[Vec3; 3]>()) as u64;
 
 /// What a machine that does not say how much memory it has is taken to have free.
 const UNKNOWN_MEMORY: u64 = 8 << 30;
 
-/// Refuses what will not fit.
-pub(super) fn check(name: &str, triangles: u64) -> Result<(), SceneError> {
-    within(name, triangles, available())
+/// Says what is wrong with so many triangles, if they will not fit.
+pub(super) fn check(triangles: u64) -> Result<(), String> {
+    within(triangles, available())
 }
 
-fn within(name: &str, triangles: u64, available: u64) -> Result<(), SceneError> {
-    let needed = triangles.saturating_mul(BYTES_PER_TRIANGLE);
-    if triangles <= u64::from(u32::MAX) && needed <= available {
+fn within(triangles: u64, available: u64) -> Result<(), String> {
+    if triangles > u64::from(u32::MAX) {
+        return Err(format!("{triangles} triangles are too many; umbra holds {}", u32::MAX));
+    }
+    let needed = triangles * BYTES_PER_TRIANGLE;
+    if needed <= available {
         return Ok(());
     }
     let gibibytes = |bytes: u64| bytes as f64 / f64::from(1 << 30);
-    Err(SceneError::TooLarge {
-        name: name.to_owned(),
-        problem: format!(
-            "{triangles} triangles need about {:.1} GiB and {:.1} GiB are free; take a smaller tessellation",
-            gibibytes(needed),
-            gibibytes(available)
-        ),
-    })
+    Err(format!(
+        "{triangles} triangles need about {:.1} GiB and {:.1} GiB are free",
+        gibibytes(needed),
+        gibibytes(available)
+    ))
 }
 
 /// Bytes that can be had: what the system has to give, or less where a control group limits it.
@@ -54,8 +54,9 @@ mod tests {
 
     #[test]
     fn a_scene_that_does_not_fit_is_refused_with_the_estimate() {
-        assert!(within("drum", 1000, 1 << 30).is_ok());
-        let refusal = within("drum", 100_000_000, 1 << 30).unwrap_err().to_string();
+        assert!(within(1000, 1 << 30).is_ok());
+        let refusal = within(100_000_000, 1 << 30).unwrap_err();
         assert!(refusal.contains("100000000 triangles") && refusal.contains("GiB"), "{refusal}");
+        assert!(within(1 << 32, u64::MAX).is_err());
     }
 }

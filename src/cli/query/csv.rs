@@ -1,0 +1,133 @@
+//! Rays as text: six numbers a line with commas between; lines that are blank or begin with `#` are skipped.
+
+/// Characters of a bad line that a message shows.
+const SHOWN: usize = 60;
+
+/// A line that is not a ray.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct BadLine {
+    /// Its number from 1 in the text at hand.
+    pub number: u64,
+    /// What is wrong.
+    pub problem: String,
+}
+
+/// How many bytes a byte order mark and a line of column names take at the beginning of a file, and how
+/// many lines that is. Names are six words of which none is a number; comments may come before.
+pub(super) fn header(bytes: &[u8]) -> (usize, u64) {
+    let mark = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+    let mut end = mark;
+    for (number, line) in (1..).zip(bytes[mark..].split_inclusive(|&byte| byte == b'\n')) {
+        end += line.len();
+        let line = String::from_utf8_lossy(line);
+        if is_row(&line) {
+            let names = line.split(',').all(|word| word.trim().parse::<f64>().is_err());
+            return if names && line.split(',').count() == 6 { (end, number) } else { (mark, 0) };
+        }
+    }
+    (mark, 0)
+}
+
+/// Cuts text into parts of whole lines, each of about `size` bytes.
+pub(super) fn parts(mut bytes: &[u8], size: usize) -> Vec<&[u8]> {
+    let mut parts = Vec::new();
+    while !bytes.is_empty() {
+        let after = size.min(bytes.len());
+        let line_end = bytes[after..].iter().position(|&byte| byte == b'\n');
+        let (part, rest) = bytes.split_at(line_end.map_or(bytes.len(), |at| after + at + 1));
+        parts.push(part);
+        bytes = rest;
+    }
+    parts
+}
+
+/// Decodes whole lines; gives their number.
+pub(super) fn decode(bytes: &[u8], rows: &mut Vec<[f64; 6]>) -> Result<u64, BadLine> {
+    let (text, is_text) = match std::str::from_utf8(bytes) {
+        Ok(text) => (text, true),
+        Err(error) => {
+            let valid = &bytes[..error.valid_up_to()];
+            let lines = valid.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
+            (std::str::from_utf8(&valid[..lines]).expect("cut after a line"), false)
+        }
+    };
+    let mut count = 0;
+    for line in text.lines() {
+        count += 1;
+        if let Some(row) = row(line) {
+            rows.push(row);
+        } else if is_row(line) {
+            let shown: String = line.trim().chars().take(SHOWN).collect();
+            let problem =
+                format!("'{shown}' is not six numbers with commas between: ox,oy,oz,tx,ty,tz");
+            return Err(BadLine { number: count, problem });
+        }
+    }
+    if !is_text {
+        let problem = "this is not text; give CSV or .npy".to_owned();
+        return Err(BadLine { number: count + 1, problem });
+    }
+    Ok(count)
+}
+
+fn is_row(line: &str) -> bool {
+    let line = line.trim();
+    !line.is_empty() && !line.starts_with('#')
+}
+
+fn row(line: &str) -> Option<[f64; 6]> {
+    let mut words = line.split(',').map(|word| word.trim().parse());
+    let mut row = [0.0; 6];
+    for number in &mut row {
+        *number = words.next()?.ok()?;
+    }
+    words.next().is_none().then_some(row)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_read_in_order_around_blank_lines_and_comments() {
+        let mut rows = Vec::new();
+        let text = "1,2,3,4,5,6\r\n\n# a comment\n -1 , +2e3,.5 ,5., nan,-inf";
+        assert_eq!(decode(text.as_bytes(), &mut rows), Ok(4));
+        assert_eq!(rows[0], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(rows[1][..4], [-1.0, 2000.0, 0.5, 5.0]);
+        assert!(rows[1][4].is_nan() && rows[1][5] == f64::NEG_INFINITY && rows.len() == 2);
+    }
+
+    #[test]
+    fn a_bad_line_is_named() {
+        for bad in ["1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,3,4,5,6,", "1 2 3 4 5 6", "1,2,x,4,5,6", ","]
+        {
+            let text = format!("1,2,3,4,5,6\n\n{bad}\n1,2,3,4,5,6\n");
+            let error = decode(text.as_bytes(), &mut Vec::new()).unwrap_err();
+            assert_eq!(error.number, 3);
+            assert!(error.problem.contains(bad));
+        }
+        let error = decode(b"1,2,3,4,5,6\n1,2,\xff,4,5,6\n", &mut Vec::new()).unwrap_err();
+        assert_eq!((error.number, error.problem.contains("not text")), (2, true));
+    }
+
+    #[test]
+    fn a_header_is_six_words() {
+        assert_eq!(header(b"ox,oy,oz,tx,ty,tz\n1,2,3,4,5,6\n"), (18, 1));
+        assert_eq!(header(b"\xef\xbb\xbf# rays\n\na,b,c,d,e,f\r\n"), (24, 3));
+        assert_eq!(header(b"\xef\xbb\xbf1,2,3,4,5,6\n"), (3, 0));
+        for row in ["1,2,3,4,5,6\n", "nan,nan,nan,nan,nan,nan\n", "a,2,3,4,5,6\n", "a;b;c\n", ""] {
+            assert_eq!(header(row.as_bytes()), (0, 0), "{row}");
+        }
+    }
+
+    #[test]
+    fn parts_are_whole_lines() {
+        let text = b"12\n3\n45678\n9";
+        for size in 0..20 {
+            let parts = parts(text, size);
+            assert_eq!(parts.concat(), text);
+            assert!(parts[..parts.len() - 1].iter().all(|part| part.ends_with(b"\n")));
+        }
+    }
+}

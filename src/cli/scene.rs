@@ -1,0 +1,83 @@
+//! `umbra scene`: a built-in scene as a file for other tools.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::failure::{Failure, say};
+use super::options::{check_outputs, write_json};
+use super::progress::with_word;
+use crate::scene::{self, builtin};
+
+const DETAILS: &str = "\
+An .obj gets an .mtl of the same name beside it; a .glb holds materials, lights and camera as well. What
+is there already is replaced.
+
+Examples:
+  umbra scene drum -o drum.glb
+  umbra scene chair-room --tessellation 10 -o room.obj";
+
+/// Writes a built-in scene as OBJ or GLB for other tools
+#[derive(Args)]
+#[command(after_help = DETAILS)]
+pub(super) struct SceneFile {
+    /// The scene
+    #[arg(value_parser = clap::builder::PossibleValuesParser::new(builtin::NAMES))]
+    name: String,
+    /// The file to write: .obj or .glb
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// How many times the triangles of the paper's scene: 0.01 to 100
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    tessellation: f64,
+    /// Writes all counts as JSON
+    #[arg(long, value_name = "FILE")]
+    stats: Option<PathBuf>,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    scene: &'a str,
+    tessellation: f64,
+    triangles: usize,
+    opaque_triangles: u32,
+    materials: usize,
+    lights: usize,
+}
+
+impl SceneFile {
+    pub fn run(self) -> Result<(), Failure> {
+        let beside = match self.output.extension().and_then(|extension| extension.to_str()) {
+            Some(end) if end.eq_ignore_ascii_case("obj") => Some(self.output.with_extension("mtl")),
+            Some(end) if end.eq_ignore_ascii_case("glb") => None,
+            _ => {
+                let output = self.output.display();
+                return Err(Failure::Input(format!(
+                    "{output}: a scene's name must end in .obj or .glb"
+                )));
+            }
+        };
+        let outputs = [Some(&self.output), beside.as_ref(), self.stats.as_ref()];
+        let outputs: Vec<&Path> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
+        check_outputs(&outputs, &[])?;
+        let scene = with_word(&format!("writing {}", self.name), || {
+            let scene = builtin::draft_at(&self.name, self.tessellation)?.finish()?;
+            scene::write(&scene, &self.output)?;
+            Ok::<_, scene::SceneError>(scene)
+        })?;
+        let (triangles, materials, lights) =
+            (scene.triangles.len(), scene.materials.len(), scene.lights.len());
+        say!("{}: {triangles} triangles, {materials} materials, {lights} lights", self.name);
+        let Some(stats) = &self.stats else { return Ok(()) };
+        let report = Report {
+            scene: &self.name,
+            tessellation: self.tessellation,
+            triangles,
+            opaque_triangles: scene.triangles.opaque_count(),
+            materials,
+            lights,
+        };
+        write_json(stats, &report)
+    }
+}

@@ -1,0 +1,157 @@
+//! From triangles and options to a scene in Embree.
+
+use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
+
+use embree_ffi::{BuildQuality, Device, DeviceConfig, Mesh, SceneBuilder, SceneOptions};
+
+use super::{Embree, OPAQUE, TRANSPARENT};
+use crate::geometry::intersect::{AtLeast, FastBox, Moller, Pluecker, RobustBox};
+use crate::geometry::lanes::Arithmetic;
+use crate::geometry::{TriangleId, Triangles};
+use crate::occlusion::{Engine, Grid, Occlusion};
+
+pub use embree_ffi::Isa;
+
+/// How much work goes into Embree's structure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, clap::ValueEnum)]
+pub enum Quality {
+    /// A tree of trees, quickly built.
+    Low,
+    /// Surface area heuristic.
+    #[default]
+    Medium,
+    /// Spatial splits, in default mode only.
+    High,
+}
+
+/// Rays that Embree is asked about at once, where many are to be answered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum PacketWidth {
+    /// `rtcOccluded1`: what Embree's bounds are stated for.
+    #[default]
+    One,
+    /// `rtcOccluded4`
+    Four,
+    /// `rtcOccluded8`
+    Eight,
+    /// `rtcOccluded16`
+    Sixteen,
+}
+
+/// How Embree is to be used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EmbreeOptions {
+    /// Build quality.
+    pub quality: Quality,
+    /// Kernels to use; the best of this CPU if none are named.
+    pub isa: Option<Isa>,
+    /// Packets for [`Occlusion::occluded_many`].
+    pub width: PacketWidth,
+    /// Whether packets are traced as coherent.
+    pub coherent: bool,
+}
+
+impl EmbreeOptions {
+    /// The arithmetic of the kernels.
+    fn arithmetic(&self) -> Arithmetic {
+        match self.isa {
+            None => Arithmetic::of_this_cpu(),
+            Some(Isa::Sse2 | Isa::Sse42 | Isa::Avx) => Arithmetic::Sse,
+            Some(Isa::Avx2) => Arithmetic::Avx2,
+            Some(Isa::Avx512) => Arithmetic::Avx512,
+        }
+    }
+}
+
+impl Embree {
+    /// Copies the triangles into Embree and builds its structure.
+    ///
+    /// # Errors
+    /// If Embree cannot be loaded, the CPU lacks the kernels, or memory does not suffice.
+    pub fn new(
+        triangles: Arc<Triangles>,
+        robust: bool,
+        options: EmbreeOptions,
+    ) -> Result<Self, embree_ffi::Error> {
+        let config =
+            options.isa.map_or_else(DeviceConfig::default, |isa| DeviceConfig::default().isa(isa));
+        let device = Device::new(config)?;
+        let quality = match options.quality {
+            Quality::Low => BuildQuality::Low,
+            Quality::Medium => BuildQuality::Medium,
+            Quality::High => BuildQuality::High,
+        };
+        let mut builder =
+            SceneBuilder::new(&device, SceneOptions::default().quality(quality).robust(robust))?;
+        let mut firsts = Vec::new();
+        let mut copied = 0;
+        let opaque = triangles.opaque_count();
+        for (range, mask) in [(0..opaque, OPAQUE), (opaque..triangles.len() as u32, TRANSPARENT)] {
+            if range.is_empty() {
+                continue;
+            }
+            firsts.push(range.start);
+            let (vertices, indices) = shared_vertices(&triangles, range);
+            copied += size_of_val(&*vertices) + size_of_val(&*indices);
+            builder.add(Mesh::new(&vertices, &indices).with_mask(mask))?;
+        }
+        let scene = builder.commit()?;
+        check_width(&scene, options.width)?;
+        // What Embree reports includes the copies of vertices and indices; its structure is the rest.
+        let bytes = device.memory_used().saturating_sub(copied);
+        Ok(Self { triangles, scene, firsts, options, robust, bytes, companion: OnceLock::new() })
+    }
+}
+
+fn check_width(scene: &embree_ffi::Scene, width: PacketWidth) -> Result<(), embree_ffi::Error> {
+    let coherence = embree_ffi::Coherence::default();
+    match width {
+        PacketWidth::One => Ok(()),
+        PacketWidth::Four => scene.packets::<4>(coherence).map(drop),
+        PacketWidth::Eight => scene.packets::<8>(coherence).map(drop),
+        PacketWidth::Sixteen => scene.packets::<16>(coherence).map(drop),
+    }
+}
+
+/// Joins equal corners: Embree's own triangles refer to vertices.
+fn shared_vertices(
+    triangles: &Triangles,
+    range: std::ops::Range<TriangleId>,
+) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
+    let mut vertices = Vec::new();
+    let mut known: HashMap<[u32; 3], u32> = HashMap::new();
+    let indices = range
+        .map(|id| {
+            triangles.get(id).map(|corner| {
+                *known.entry(corner.to_array().map(f32::to_bits)).or_insert_with(|| {
+                    vertices.push(corner.to_array());
+                    vertices.len() as u32 - 1
+                })
+            })
+        })
+        .collect();
+    (vertices, indices)
+}
+
+/// The companion grid with the lower bound of Embree's answer as its test.
+pub(super) fn at_least(
+    triangles: &Arc<Triangles>,
+    grid: Arc<Grid>,
+    options: &EmbreeOptions,
+    robust: bool,
+) -> Box<dyn Occlusion> {
+    let triangles = triangles.clone();
+    let arithmetic = options.arithmetic();
+    macro_rules! engine {
+        ($test:ty) => {
+            Box::new(Engine::<_, $test>::new(triangles, grid, Some(arithmetic)))
+        };
+    }
+    match (robust, arithmetic) {
+        (true, _) => engine!(AtLeast<Pluecker, RobustBox>),
+        (false, Arithmetic::Sse) => engine!(AtLeast<Moller, FastBox<false, false>>),
+        (false, Arithmetic::Avx2) => engine!(AtLeast<Moller, FastBox<true, false>>),
+        (false, Arithmetic::Avx512) => engine!(AtLeast<Moller, FastBox<true, true>>),
+    }
+}

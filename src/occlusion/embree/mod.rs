@@ -1,0 +1,171 @@
+//! Intel Embree 4 as a backend.
+//!
+//! Embree decides by its own arithmetic: [`Test::Pluecker`](super::Test::Pluecker) stands for its robust
+//! mode, [`Test::Moller`](super::Test::Moller) for its default one. It shows no leaves, so the occluder's
+//! identity comes from an argument filter, and its *cell* is the voxel of a companion grid around the hit
+//! point; that grid is built when a memory first needs it, and not otherwise. What a memory
+//! in front of Embree tests is the lower bound of Embree's own answer (`geometry::intersect::embree`), so
+//! that it never says "blocked" where Embree would not.
+//!
+//! Each opaque and transparent triangle lies in a geometry of its own kind with a mask of its own.
+
+mod build;
+mod packets;
+
+use std::num::NonZeroU32;
+use std::sync::{Arc, OnceLock};
+
+use embree_ffi::{Hit, Ray as EmbreeRay, Scene, Verdict};
+
+use super::nearest::distance;
+use super::{Cell, Grid, GridOptions, LeftOut, Nearest, Occluder, Occlusion, Tally};
+use crate::geometry::{Ray, TriangleId, Triangles};
+
+pub use build::{EmbreeOptions, Isa, PacketWidth, Quality};
+
+/// Rays with this mask see opaque triangles only.
+const OPAQUE: NonZeroU32 = NonZeroU32::new(1).unwrap();
+/// Rays with this mask see transparent triangles only.
+const TRANSPARENT: NonZeroU32 = NonZeroU32::new(2).unwrap();
+
+/// A scene in Embree.
+pub struct Embree {
+    triangles: Arc<Triangles>,
+    scene: Scene,
+    /// First triangle of each geometry.
+    firsts: Vec<TriangleId>,
+    options: EmbreeOptions,
+    robust: bool,
+    bytes: usize,
+    companion: OnceLock<Companion>,
+}
+
+/// The grid whose voxels stand in for Embree's leaves.
+struct Companion {
+    grid: Arc<Grid>,
+    /// The grid with the lower bound of Embree's answer as its test.
+    at_least: Box<dyn Occlusion>,
+}
+
+impl Embree {
+    fn ray(ray: &Ray, mask: NonZeroU32) -> EmbreeRay {
+        EmbreeRay::new(ray.origin.to_array(), ray.direction.to_array())
+            .with_interval(0.0, ray.end)
+            .with_mask(mask)
+    }
+
+    fn triangle(&self, hit: &Hit) -> TriangleId {
+        self.firsts[hit.geometry as usize] + hit.primitive
+    }
+
+    fn companion(&self) -> &Companion {
+        self.companion.get_or_init(|| {
+            let grid = Arc::new(Grid::new(&self.triangles, GridOptions::default()));
+            let at_least =
+                build::at_least(&self.triangles, grid.clone(), &self.options, self.robust);
+            Companion { grid, at_least }
+        })
+    }
+
+    /// Counts a query; whether the ray can be answered.
+    fn admit(ray: &Ray, tally: &mut Tally) -> bool {
+        let valid = ray.is_valid();
+        tally.traversals += u64::from(valid);
+        tally.invalid_rays += u64::from(!valid);
+        valid
+    }
+}
+
+impl Occlusion for Embree {
+    fn occluder(&self, ray: &Ray, tally: &mut Tally) -> Option<Occluder> {
+        if !Self::admit(ray, tally) {
+            return None;
+        }
+        let hit = self.scene.occluder(&Self::ray(ray, OPAQUE))?;
+        let cell = self.companion().grid.cell_at(ray.at(f64::from(hit.t)));
+        Some(Occluder { triangle: self.triangle(&hit), cell })
+    }
+
+    fn occluded(&self, ray: &Ray, tally: &mut Tally) -> bool {
+        Self::admit(ray, tally) && self.scene.occluded(&Self::ray(ray, OPAQUE))
+    }
+
+    fn occluded_many(&self, rays: &[Ray], blocked: &mut [bool], tally: &mut Tally) {
+        assert_eq!(rays.len(), blocked.len(), "one answer a ray");
+        if !packets::occluded(self, rays, blocked, tally) {
+            for (ray, blocked) in rays.iter().zip(blocked) {
+                *blocked = self.occluded(ray, tally);
+            }
+        }
+    }
+
+    fn occluder_in(&self, cell: Cell, ray: &Ray, tally: &mut Tally) -> Option<Occluder> {
+        self.companion().at_least.occluder_in(cell, ray, tally)
+    }
+
+    fn occluder_except(
+        &self,
+        ray: &Ray,
+        within: Option<Cell>,
+        left_out: &mut LeftOut,
+        tally: &mut Tally,
+    ) -> Option<Occluder> {
+        if within.is_some() {
+            return self.companion().at_least.occluder_except(ray, within, left_out, tally);
+        }
+        if !Self::admit(ray, tally) {
+            return None;
+        }
+        let mut found = None;
+        // What the lower bound missed, Embree may still meet: only the spawner is left out.
+        self.scene.occluded_with(&Self::ray(ray, OPAQUE), |hit| {
+            let triangle = self.triangle(hit);
+            if left_out.is_spawner(triangle) {
+                return Verdict::Reject;
+            }
+            found = Some((triangle, hit.t));
+            Verdict::Accept
+        });
+        let (triangle, t) = found?;
+        let cell = self.companion().grid.cell_at(ray.at(f64::from(t)));
+        Some(Occluder { triangle, cell })
+    }
+
+    fn meets(&self, triangle: TriangleId, ray: &Ray, tally: &mut Tally) -> bool {
+        self.companion().at_least.meets(triangle, ray, tally)
+    }
+
+    fn transparent(&self, ray: &Ray, found: &mut Vec<TriangleId>, tally: &mut Tally) {
+        found.clear();
+        if self.triangles.opaque_count() as usize == self.triangles.len()
+            || !Self::admit(ray, tally)
+        {
+            return;
+        }
+        self.scene.occluded_with(&Self::ray(ray, TRANSPARENT), |hit| {
+            found.push(self.triangle(hit));
+            Verdict::Reject
+        });
+        found.sort_unstable();
+        found.dedup();
+    }
+
+    fn nearest(&self, ray: &Ray, tally: &mut Tally) -> Option<Nearest> {
+        if !Self::admit(ray, tally) {
+            return None;
+        }
+        let hit = self.scene.intersect(&Self::ray(ray, OPAQUE | TRANSPARENT))?;
+        let triangle = self.triangle(&hit);
+        // The place of the hit is computed as every backend computes it.
+        let t = distance(ray, &self.triangles.get(triangle)).unwrap_or(f64::from(hit.t));
+        Some(Nearest { triangle, t })
+    }
+
+    fn order(&self) -> &[TriangleId] {
+        self.companion().at_least.order()
+    }
+
+    fn memory(&self) -> usize {
+        self.bytes + self.companion.get().map_or(0, |companion| companion.at_least.memory())
+    }
+}

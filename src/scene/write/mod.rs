@@ -1,0 +1,87 @@
+//! Scenes as OBJ or GLB files for other tools. What `load` reads back has the same triangles, bit for
+//! bit and in the same order.
+
+mod glb;
+mod obj;
+
+use std::{
+    fs::File,
+    io::{self, BufWriter, Write},
+    ops::Range,
+    path::Path,
+};
+
+use glam::Vec3;
+
+use super::{Scene, SceneError};
+pub use glb::write_glb;
+pub use obj::write_obj;
+
+/// Writes a scene as the end of the name says: `.obj` (with an `.mtl` beside it) or `.glb`.
+///
+/// # Errors
+/// [`SceneError::Unwritable`], also for any other name.
+pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    match extension.to_str() {
+        Some("obj") => write_obj(scene, path),
+        Some("glb") => write_glb(scene, path),
+        _ => Err(unwritable(path)(io::Error::other("scenes are written as .obj or .glb"))),
+    }
+}
+
+fn unwritable(path: &Path) -> impl Fn(io::Error) -> SceneError {
+    move |reason| SceneError::Unwritable { path: path.into(), reason }
+}
+
+/// Writes a file under another name beside it, and renames it once it is whole.
+fn write_whole(
+    path: &Path,
+    content: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+) -> Result<(), SceneError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let write = || {
+        let file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+        let mut writer = BufWriter::new(file.as_file());
+        content(&mut writer)?;
+        writer.flush()?;
+        drop(writer);
+        file.persist(path).map_err(|error| error.error)?;
+        Ok(())
+    };
+    write().map_err(unwritable(path))
+}
+
+/// Triangles next to each other with one material, all smooth or all flat.
+struct Run {
+    triangles: Range<u32>,
+    material: u32,
+    smooth: bool,
+}
+
+fn runs(scene: &Scene) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (id, &material) in (0..).zip(&scene.material_of) {
+        let smooth =
+            scene.normals.get(id as usize).is_some_and(|normals| *normals != [Vec3::ZERO; 3]);
+        match runs.last_mut() {
+            Some(run) if run.material == material && run.smooth == smooth => run.triangles.end += 1,
+            _ => runs.push(Run { triangles: id..id + 1, material, smooth }),
+        }
+    }
+    runs
+}
+
+/// A name for each material: its own, made different from those before it.
+fn material_names(scene: &Scene) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for (index, material) in scene.materials.iter().enumerate() {
+        let name = material.name.split_whitespace().collect::<Vec<_>>().join("_");
+        let unique = !name.is_empty() && !names.contains(&name);
+        names.push(if unique { name } else { format!("{name}_{index}") });
+    }
+    names
+}
