@@ -2,11 +2,12 @@
 //! # Modules
 //!
 //! One direction of dependence, ground floor first: [`geometry`], [`exact`], [`scene`], [`occlusion`],
-//! [`shadow`], [`render`], [`cli`].
+//! [`shadow`], [`render`], [`measure`], [`cli`].
 
 pub mod cli;
 pub mod exact;
 pub mod geometry;
+pub mod measure;
 pub mod occlusion;
 pub mod render;
 pub mod scene;

@@ -6,7 +6,7 @@ mod rooms;
 
 use rooms::{backends, glass_room, small_chair_room};
 use umbra::occlusion::{Backend, Occlusion};
-use umbra::render::{Order, Progress, Rendered, Settings, Statistics, render};
+use umbra::render::{Answered, Order, Progress, Rendered, Settings, Shown, Statistics, render};
 use umbra::scene::Scene;
 use umbra::shadow::{Method, MethodError, Plan, Retest, SelfShadow, prepare};
 
@@ -18,6 +18,7 @@ const SETTINGS: Settings = Settings {
     order: Order::Scanline,
     rows_per_unit: 5,
     mask: true,
+    answers: None,
     record: false,
 };
 
@@ -192,6 +193,58 @@ fn leaving_out_the_spawner_gives_one_picture_for_every_method_and_backend() {
                 let found = picture(&scene, &**backend, plan, order, 3);
                 assert_same(&found, &own, &format!("{name} {order:?} {plan:?}"));
             }
+        }
+    }
+}
+
+#[test]
+fn pictures_of_the_answers_show_every_query_and_change_nothing() {
+    let scene = glass_room();
+    let (_, grid) = &backends(&scene)[0];
+    let shadows = prepare(Method::CacheTree, &scene, &**grid).unwrap();
+    for order in ORDERS {
+        let plain = Settings { order, ..SETTINGS };
+        let rendered = |answers| {
+            let settings = Settings { answers, ..plain };
+            render(&scene, &**grid, &*shadows, &settings, &Progress::default()).unwrap()
+        };
+        let sums = |rendered: &Rendered| {
+            let map = rendered.answers.as_ref().unwrap();
+            let mut sum = Answered::default();
+            for (x, y) in (0..plain.height).flat_map(|y| (0..plain.width).map(move |x| (x, y))) {
+                for (sum, n) in sum.outcomes.iter_mut().zip(map.at(x, y).outcomes) {
+                    *sum += n;
+                }
+                sum.cost += map.at(x, y).cost;
+            }
+            sum
+        };
+        let (without, with) = (rendered(None), rendered(Some(Shown::default())));
+        assert!(without.answers.is_none());
+        assert_same(&with, &without, &format!("{order:?}"));
+        let (tally, glass) = (with.statistics.shadows, with.statistics.transparent);
+        assert_eq!(tally, without.statistics.shadows);
+        let all = sums(&with);
+        let [object, voxel, blocked, lit, _, _] = all.outcomes.map(u64::from);
+        assert_eq!((object, voxel), (tally.object_hits, tally.voxel_hits));
+        assert_eq!(object + voxel + blocked, tally.blocked);
+        assert_eq!(blocked + lit, tally.backend.traversals);
+        let [casting, attenuating] = [tally.backend, glass].map(|t| t.cells + t.triangle_tests);
+        assert_eq!(all.cost, casting + attenuating);
+
+        let mut by_light = Answered::default();
+        for light in 0..scene.lights.len() as u32 {
+            let one = sums(&rendered(Some(Shown { light: Some(light) })));
+            for (sum, n) in by_light.outcomes.iter_mut().zip(one.outcomes) {
+                *sum += n;
+            }
+            by_light.cost += one.cost;
+        }
+        assert_eq!(by_light, all);
+        let map = with.answers.unwrap();
+        for picture in [map.outcome_picture(), map.cost_picture()] {
+            assert_eq!(picture.width(), plain.width);
+            assert!(picture.height() > plain.height, "the legend is below");
         }
     }
 }
