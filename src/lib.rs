@@ -2,12 +2,12 @@
 //! # Modules
 //!
 //! One direction of dependence, ground floor first: [`geometry`], [`exact`], [`scene`], [`occlusion`],
-//! [`shadow`], [`render`], [`cli`]; beside
-//! them [`whole_file`].
+//! [`shadow`], [`render`], [`measure`], [`cli`]; beside them [`whole_file`].
 
 pub mod cli;
 pub mod exact;
 pub mod geometry;
+pub mod measure;
 pub mod occlusion;
 pub mod render;
 pub mod scene;

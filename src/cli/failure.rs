@@ -18,6 +18,8 @@ pub(super) use say;
 pub(super) enum Failure {
     /// The input is bad: exit status 2.
     Input(String),
+    /// A comparison failed: exit status 1.
+    Comparison(String),
     /// Whoever read standard output has seen enough: nothing to say.
     NoReader,
 }
@@ -49,6 +51,10 @@ impl Failure {
                 // One line, whatever names and files hold.
                 say!("umbra: {}", message.replace(char::is_control, " "));
                 ExitCode::from(2)
+            }
+            Self::Comparison(message) => {
+                say!("umbra: {message}");
+                ExitCode::from(1)
             }
             Self::NoReader => ExitCode::SUCCESS,
         }
@@ -83,4 +89,5 @@ input!(
     crate::shadow::MethodError,
     crate::render::SettingsError,
     crate::render::OutputError,
+    crate::measure::paper::PaperError,
 );

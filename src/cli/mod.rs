@@ -2,6 +2,7 @@
 
 mod failure;
 mod options;
+mod paper;
 mod progress;
 mod query;
 mod render;
@@ -22,6 +23,7 @@ Exit status: 0 done; 1 a comparison failed; 2 bad input, and nothing was written
 Examples:
   umbra render chair-room -o room.png
   umbra query chair-room --rays rays.csv -o blocked.csv
+  umbra paper --quick
   umbra scene drum -o drum.glb";
 
 /// Does light reach this point? Exact and fast occlusion queries for triangle scenes.
@@ -36,6 +38,7 @@ struct Cli {
 enum Command {
     Render(render::Render),
     Query(query::Query),
+    Paper(paper::Paper),
     Scene(scene::SceneFile),
 }
 
@@ -45,6 +48,7 @@ pub fn main() -> ExitCode {
     let outcome = match Cli::try_parse() {
         Ok(Cli { command: Command::Render(render) }) => render.run(),
         Ok(Cli { command: Command::Query(query) }) => query.run(),
+        Ok(Cli { command: Command::Paper(paper) }) => paper.run(),
         Ok(Cli { command: Command::Scene(scene) }) => scene.run(),
         Err(error) => match error.kind() {
             // A closed pipe is no failure.

@@ -10,6 +10,7 @@ use super::failure::{Failure, say};
 use super::progress::with_word;
 use crate::occlusion::{Backend, BuildOptions, GridOptions, Occlusion, Test, build};
 use crate::scene::Scene;
+use crate::shadow::{Method, Plan, Retest, SelfShadow};
 use crate::whole_file::{folder_of, write_whole};
 
 /// Which engine answers.
@@ -42,6 +43,15 @@ fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
     parts.try_into().map_err(|_| "give three numbers, like 64,64,32".to_owned())
 }
 
+/// The size of a picture.
+pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let (width, height) =
+        text.split_once(['x', 'X', '×']).ok_or("give it as WIDTHxHEIGHT, like 640x486")?;
+    let number =
+        |part: &str| part.trim().parse().map_err(|_| format!("'{part}' is not a number of pixels"));
+    Ok((number(width)?, number(height)?))
+}
+
 impl EngineOptions {
     /// The test that was asked for, or the backend's own choice.
     pub fn test(&self) -> Test {
@@ -70,6 +80,44 @@ impl EngineOptions {
             .num_threads(threads)
             .build()
             .map_err(|e| Failure::Input(format!("cannot start {threads} threads: {e}")))
+    }
+}
+
+/// What stands before the engine.
+#[derive(Args)]
+pub(super) struct ShadowOptions {
+    /// The method that stands before the engine
+    #[arg(long, value_enum, default_value_t)]
+    pub shadows: Method,
+    /// What keeps a shadow ray from meeting the triangle that it starts on
+    #[arg(long, value_enum, default_value_t)]
+    self_shadow: SelfShadow,
+    /// Whether a traversal tests again what was tested from memory
+    #[arg(long, value_enum, default_value_t)]
+    retest: Retest,
+    /// Forgets what is remembered at the beginning of each scanline (orders by scanline)
+    #[arg(long)]
+    reset_scanlines: bool,
+    /// Bounces down to which a cache tree has nodes of its own
+    #[arg(long, value_name = "N", default_value_t = Plan::from(Method::CacheTree).tree_depth)]
+    tree_depth: u8,
+    /// For cache-tree-tolerance: how far apart rays may start, in diagonals of the scene, and point, in
+    /// half turns
+    #[arg(long, value_name = "SHARE", default_value_t = Plan::from(Method::CacheTree).tolerance)]
+    tolerance: f32,
+}
+
+impl ShadowOptions {
+    /// The method with its options.
+    pub fn plan(&self) -> Plan {
+        Plan {
+            method: self.shadows,
+            self_shadow: self.self_shadow,
+            retest: self.retest,
+            reset_scanlines: self.reset_scanlines,
+            tree_depth: self.tree_depth,
+            tolerance: self.tolerance,
+        }
     }
 }
 

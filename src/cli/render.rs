@@ -7,13 +7,15 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{EngineOptions, check_outputs, load_scene, write_json};
+use super::options::{
+    EngineOptions, ShadowOptions, check_outputs, load_scene, parse_size, write_json,
+};
 use super::progress::with_bar;
 use crate::render::{
-    Order, Picture, Progress, Rendered, Settings, Statistics, render, write_picture,
+    Film, Order, Picture, Progress, Rendered, Settings, Shown, Statistics, render, write_picture,
 };
 use crate::scene::{Dropped, builtin};
-use crate::shadow::{Method, prepare};
+use crate::shadow::prepare;
 
 const DETAILS: &str = "\
 A scene without camera or lights gets sensible ones, and the command says so.
@@ -33,9 +35,8 @@ pub(super) struct Render {
     output: PathBuf,
     #[command(flatten)]
     engine: EngineOptions,
-    /// The method that stands before the engine
-    #[arg(long, value_enum, default_value_t)]
-    shadows: Method,
+    #[command(flatten)]
+    shadows: ShadowOptions,
     /// Size of the picture
     ///
     /// 640x486 if not given, and the paper's own size for its scenes
@@ -56,20 +57,16 @@ pub(super) struct Render {
     /// Factor from radiance to picture; chosen from the picture if the scene says nothing
     #[arg(long, value_name = "FACTOR")]
     exposure: Option<f32>,
-    /// Also writes the shadow mask as a picture beside the output: NAME.mask.png
+    /// Also writes pictures of the shadows beside the output: NAME.mask.png (what is in shadow),
+    /// NAME.shadows.png (how that was answered) and NAME.cost.png (what it cost)
     #[arg(long)]
     aov: bool,
+    /// Shows answers and cost of one light, by its number from 0, instead of all together
+    #[arg(long, value_name = "N", requires = "aov")]
+    aov_light: Option<u32>,
     /// Writes all counts and times as JSON
     #[arg(long, value_name = "FILE")]
     stats: Option<PathBuf>,
-}
-
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let (width, height) =
-        text.split_once(['x', 'X', '×']).ok_or("give it as WIDTHxHEIGHT, like 640x486")?;
-    let number =
-        |part: &str| part.trim().parse().map_err(|_| format!("'{part}' is not a number of pixels"));
-    Ok((number(width)?, number(height)?))
 }
 
 /// The paper's size of a picture of its scenes; that of most of them for other scenes.
@@ -114,15 +111,16 @@ impl Render {
             depth: self.depth,
             order: self.order,
             mask: self.aov,
+            answers: self.aov.then_some(Shown { light: self.aov_light }),
             ..Settings::default()
         };
         settings.check()?;
         if self.exposure.is_some_and(|e| !(e.is_finite() && e > 0.0)) {
             return Err(Failure::Input("--exposure: give a number above 0".to_owned()));
         }
-        let mask = self.aov.then(|| beside(&self.output, "mask"));
-        let outputs = [Some(&self.output), mask.as_ref(), self.stats.as_ref()];
-        let outputs: Vec<_> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
+        let pictures = self.aov.then(|| PICTURES.map(|what| beside(&self.output, what)));
+        let outputs = std::iter::once(&self.output).chain(pictures.iter().flatten());
+        let outputs: Vec<_> = outputs.chain(&self.stats).map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = self.engine.pool()?;
         pool.install(|| self.render(kind, &settings))
@@ -132,21 +130,32 @@ impl Render {
         let start = Instant::now();
         let scene = load_scene(&self.scene)?;
         let load_seconds = start.elapsed().as_secs_f64();
+        if let Some(light) = self.aov_light.filter(|&light| light as usize >= scene.lights.len()) {
+            return Err(Failure::Input(format!(
+                "--aov-light {light}: {} has {} lights, numbered from 0",
+                scene.name,
+                scene.lights.len()
+            )));
+        }
         let (backend, build_seconds) = self.engine.build(&scene)?;
         let start = Instant::now();
-        let shadows = prepare(self.shadows, &scene, &*backend)?;
+        let shadows = prepare(self.shadows.plan(), &scene, &*backend)?;
         let progress = Progress::default();
         let pixels = u64::from(settings.width) * u64::from(settings.height);
         let rendered = with_bar(pixels, &progress, || {
             render(&scene, &*backend, &*shadows, settings, &progress)
         })?;
         let render_seconds = start.elapsed().as_secs_f64();
-        let Rendered { film, mask, statistics, .. } = rendered;
+        let Rendered { film, mask, answers, statistics, .. } = rendered;
         let exposure =
             self.exposure.or(scene.exposure).unwrap_or_else(|| film.automatic_exposure());
         write_picture(&film, exposure, kind, &self.output)?;
-        if let Some(mask) = mask {
-            write_picture(&mask.picture(), 1.0, Picture::Png8, &beside(&self.output, "mask"))?;
+        if let (Some(mask), Some(answers)) = (mask, answers) {
+            let films: [Film; PICTURES.len()] =
+                [mask.picture(), answers.outcome_picture(), answers.cost_picture()];
+            for (film, what) in films.iter().zip(PICTURES) {
+                write_picture(film, 1.0, Picture::Png8, &beside(&self.output, what))?;
+            }
         }
         let rays = statistics.rays;
         say!(
@@ -156,7 +165,7 @@ impl Render {
             scene.lights.len(),
             self.engine.backend,
             self.engine.test(),
-            self.shadows,
+            self.shadows.shadows,
             rays.total(),
             rays.shadow,
             statistics.shadows.blocked,
@@ -176,7 +185,7 @@ impl Render {
             notes: &scene.notes,
             backend: self.engine.backend.name(),
             test: self.engine.test().name(),
-            shadows: self.shadows.name(),
+            shadows: self.shadows.shadows.name(),
             width: settings.width,
             height: settings.height,
             samples_per_pixel: settings.samples * settings.samples,
@@ -192,6 +201,9 @@ impl Render {
         write_json(stats, &report)
     }
 }
+
+/// The pictures of the shadows.
+const PICTURES: [&str; 3] = ["mask", "shadows", "cost"];
 
 /// The name of a picture that belongs to another: `room.png` and "mask" give `room.mask.png`.
 fn beside(path: &Path, what: &str) -> PathBuf {

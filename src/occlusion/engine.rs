@@ -4,9 +4,10 @@ use std::marker::PhantomData;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::nearest::distance;
+use super::nearest::NearestHit;
+use super::sparing::SparingOccluder;
 use super::walk::walk_any;
-use super::{Cell, Nearest, Occluder, Occlusion, Tally, Visit, Walk};
+use super::{Cell, LeftOut, Nearest, Occluder, Occlusion, Tally, Visit, Walk};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
 #[cfg(not(target_arch = "x86_64"))]
 use crate::geometry::lanes::Scalar;
@@ -41,6 +42,10 @@ impl<W: Walk, T: TriangleTest> Engine<W, T> {
         &self.walk
     }
 
+    pub(super) fn triangles(&self) -> &Triangles {
+        &self.triangles
+    }
+
     /// Runs a job compiled for the instruction set of the arithmetic, which `new` checked.
     #[inline]
     fn run<J: Job<W, T>>(&self, job: J) -> J::Answer {
@@ -60,7 +65,7 @@ impl<W: Walk, T: TriangleTest> Engine<W, T> {
 }
 
 /// Something to do with an engine, in lanes of any kind.
-trait Job<W: Walk, T: TriangleTest> {
+pub(super) trait Job<W: Walk, T: TriangleTest> {
     type Answer;
     fn run<L: Lanes>(self, engine: &Engine<W, T>) -> Self::Answer;
 }
@@ -84,6 +89,16 @@ impl<W: Walk, T: TriangleTest> Occlusion for Engine<W, T> {
 
     fn occluder_in(&self, cell: Cell, ray: &Ray, tally: &mut Tally) -> Option<Occluder> {
         self.run(AnyOccluder { ray, within: Some(cell), tally })
+    }
+
+    fn occluder_except(
+        &self,
+        ray: &Ray,
+        within: Option<Cell>,
+        left_out: &mut LeftOut,
+        tally: &mut Tally,
+    ) -> Option<Occluder> {
+        self.run(SparingOccluder { ray, within, left_out, tally })
     }
 
     fn meets(&self, triangle: TriangleId, ray: &Ray, tally: &mut Tally) -> bool {
@@ -115,7 +130,7 @@ impl<W: Walk, T: TriangleTest> Occlusion for Engine<W, T> {
 /// Tests triangles of a cell; calls `hit` for each wanted one that the ray meets, in their order, until
 /// it breaks.
 #[inline(always)]
-fn test_each<T: TriangleTest, L: Lanes>(
+pub(super) fn test_each<T: TriangleTest, L: Lanes>(
     triangles: &Triangles,
     ray: &Ray,
     lanes: &RayLanes<L>,
@@ -170,7 +185,7 @@ where
 
 /// Whether the ray can be answered at all; counts it.
 #[inline(always)]
-fn admit(ray: &Ray, tally: &mut Tally) -> bool {
+pub(super) fn admit(ray: &Ray, tally: &mut Tally) -> bool {
     let valid = ray.is_valid();
     tally.invalid_rays += u64::from(!valid);
     valid
@@ -320,72 +335,5 @@ impl<T: TriangleTest, L: Lanes> Visit for TransparentVisitor<'_, T, L> {
     #[inline(always)]
     fn end(&self) -> f32 {
         self.job.ray.end
-    }
-}
-
-struct NearestHit<'a> {
-    ray: &'a Ray,
-    tally: &'a mut Tally,
-}
-
-impl<W: Walk, T: TriangleTest> Job<W, T> for NearestHit<'_> {
-    type Answer = Option<Nearest>;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, engine: &Engine<W, T>) -> Option<Nearest> {
-        let Self { ray, tally } = self;
-        if !admit(ray, tally) {
-            return None;
-        }
-        tally.traversals += 1;
-        let mut visitor = NearestVisitor::<T, L> {
-            triangles: &engine.triangles,
-            ray,
-            lanes: RayLanes::new(ray),
-            tally,
-            best: None,
-            test: PhantomData,
-        };
-        walk_any(&engine.walk, ray, &mut visitor);
-        visitor.best
-    }
-}
-
-struct NearestVisitor<'a, T, L> {
-    triangles: &'a Triangles,
-    ray: &'a Ray,
-    lanes: RayLanes<L>,
-    tally: &'a mut Tally,
-    best: Option<Nearest>,
-    test: PhantomData<T>,
-}
-
-impl<T: TriangleTest, L: Lanes> Visit for NearestVisitor<'_, T, L> {
-    #[inline(always)]
-    fn visit(&mut self, _: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
-        let Self { triangles, ray, lanes, tally, best, .. } = self;
-        tally.cells += 1;
-        test_each::<T, L>(
-            triangles,
-            ray,
-            lanes,
-            ids,
-            tally,
-            |_| true,
-            |triangle| {
-                if let Some(t) = distance(ray, &triangles.get(triangle)) {
-                    let nearer = best.is_none_or(|best| (t, triangle) < (best.t, best.triangle));
-                    if nearer {
-                        *best = Some(Nearest { triangle, t });
-                    }
-                }
-                ControlFlow::Continue(())
-            },
-        )
-    }
-
-    #[inline(always)]
-    fn end(&self) -> f32 {
-        self.best.map_or(self.ray.end, |best| (best.t as f32).next_up())
     }
 }

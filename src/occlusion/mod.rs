@@ -16,7 +16,9 @@ mod embree;
 mod engine;
 mod grid;
 mod kind;
+mod left_out;
 mod nearest;
+mod sparing;
 mod tally;
 mod walk;
 
@@ -30,6 +32,7 @@ pub use embree::{Embree, EmbreeOptions, Isa, PacketWidth, Quality};
 pub use engine::Engine;
 pub use grid::{Grid, GridOptions};
 pub use kind::{Backend, BackendError, BuildOptions, Test, build};
+pub use left_out::LeftOut;
 pub use nearest::Nearest;
 pub use tally::Tally;
 pub use walk::{Visit, Walk};
@@ -78,6 +81,33 @@ pub trait Occlusion: Any + Send + Sync {
 
     /// The first opaque triangle of a cell that the ray meets.
     fn occluder_in(&self, cell: Cell, ray: &Ray, tally: &mut Tally) -> Option<Occluder>;
+
+    /// Any opaque triangle, of a cell or of all, that the ray meets and that is not left out. Those
+    /// found not to block may be noted in `left_out`; all but the spawner may be tested nevertheless.
+    fn occluder_except(
+        &self,
+        ray: &Ray,
+        within: Option<Cell>,
+        left_out: &mut LeftOut,
+        tally: &mut Tally,
+    ) -> Option<Occluder> {
+        let found = match within {
+            None => self.occluder(ray, tally),
+            Some(cell) => self.occluder_in(cell, ray, tally),
+        }?;
+        if !left_out.is_spawner(found.triangle) {
+            return Some(found);
+        }
+        // Rare where spawners are left out at all, and slow: whoever can do better should.
+        let everything = Cell { start: 0, end: self.order().len() as u32 };
+        let Cell { start, end } = within.unwrap_or(everything);
+        (start..end).find_map(|place| {
+            let triangle = self.order()[place as usize];
+            let wanted = triangle < left_out.opaque() && !left_out.is_spawner(triangle);
+            let cell = Cell { start: place, end: place + 1 };
+            (wanted && self.meets(triangle, ray, tally)).then_some(Occluder { triangle, cell })
+        })
+    }
 
     /// Whether the ray meets this one triangle.
     fn meets(&self, triangle: TriangleId, ray: &Ray, tally: &mut Tally) -> bool;

@@ -1,6 +1,14 @@
 //! The nearest hit, for rays that see rather than ask.
 
-use crate::geometry::{Ray, Triangle, TriangleId};
+use std::marker::PhantomData;
+use std::ops::ControlFlow;
+
+use super::engine::{Engine, Job, admit, test_each};
+use super::walk::walk_any;
+use super::{Cell, Tally, Visit, Walk};
+use crate::geometry::intersect::{RayLanes, TriangleTest};
+use crate::geometry::lanes::Lanes;
+use crate::geometry::{Ray, Triangle, TriangleId, Triangles};
 
 /// Where a ray first meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,4 +26,71 @@ pub(super) fn distance(ray: &Ray, &[a, b, c]: &Triangle) -> Option<f64> {
     let normal = (b - a).cross(c - a);
     let t = normal.dot(a - ray.origin.as_dvec3()) / normal.dot(ray.direction.as_dvec3());
     (t > 0.0 && t.is_finite()).then_some(t)
+}
+
+pub(super) struct NearestHit<'a> {
+    pub ray: &'a Ray,
+    pub tally: &'a mut Tally,
+}
+
+impl<W: Walk, T: TriangleTest> Job<W, T> for NearestHit<'_> {
+    type Answer = Option<Nearest>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, engine: &Engine<W, T>) -> Option<Nearest> {
+        let Self { ray, tally } = self;
+        if !admit(ray, tally) {
+            return None;
+        }
+        tally.traversals += 1;
+        let mut visitor = NearestVisitor::<T, L> {
+            triangles: engine.triangles(),
+            ray,
+            lanes: RayLanes::new(ray),
+            tally,
+            best: None,
+            test: PhantomData,
+        };
+        walk_any(engine.walk(), ray, &mut visitor);
+        visitor.best
+    }
+}
+
+struct NearestVisitor<'a, T, L> {
+    triangles: &'a Triangles,
+    ray: &'a Ray,
+    lanes: RayLanes<L>,
+    tally: &'a mut Tally,
+    best: Option<Nearest>,
+    test: PhantomData<T>,
+}
+
+impl<T: TriangleTest, L: Lanes> Visit for NearestVisitor<'_, T, L> {
+    #[inline(always)]
+    fn visit(&mut self, _: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
+        let Self { triangles, ray, lanes, tally, best, .. } = self;
+        tally.cells += 1;
+        test_each::<T, L>(
+            triangles,
+            ray,
+            lanes,
+            ids,
+            tally,
+            |_| true,
+            |triangle| {
+                if let Some(t) = distance(ray, &triangles.get(triangle)) {
+                    let nearer = best.is_none_or(|best| (t, triangle) < (best.t, best.triangle));
+                    if nearer {
+                        *best = Some(Nearest { triangle, t });
+                    }
+                }
+                ControlFlow::Continue(())
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.best.map_or(self.ray.end, |best| (best.t as f32).next_up())
+    }
 }

@@ -5,17 +5,22 @@
 //! are the same for any number of threads, bit for bit. Within a unit, rays are followed generation
 //! by generation, and the shadow queries of a generation are asked light by light.
 
+mod answers;
 mod film;
+mod label;
 mod order;
 mod output;
+mod scanlines;
 mod settings;
 mod shading;
 mod statistics;
 mod whitted;
 
+pub use answers::{AnswerMap, Answered, Shown};
 pub use film::{Film, ShadowMask};
 pub use order::Order;
 pub use output::{OutputError, Picture, write_picture};
+pub use scanlines::Scanlines;
 pub use settings::{Settings, SettingsError};
 pub use statistics::{RayCounts, Statistics};
 pub use whitted::RecordedQuery;
@@ -36,6 +41,8 @@ pub struct Rendered {
     pub film: Film,
     /// Which primary hits each light reaches, if asked for.
     pub mask: Option<ShadowMask>,
+    /// How the shadow queries of each pixel were answered, if asked for.
+    pub answers: Option<AnswerMap>,
     /// All shadow queries, light by light within each generation of each unit, if asked for.
     pub queries: Vec<RecordedQuery>,
     /// Counts.
@@ -77,6 +84,7 @@ pub fn render(
     let mut film = Film::new(settings.width, settings.height);
     let mut mask =
         settings.mask.then(|| ShadowMask::new(settings.width, settings.height, scene.lights.len()));
+    let mut answers = settings.answers.map(|_| AnswerMap::new(settings.width, settings.height));
     let mut statistics = Statistics::default();
     let mut queries = Vec::new();
     for (pixels, unit) in units.iter().zip(done) {
@@ -88,8 +96,13 @@ pub fn render(
                 mask.set(*place, seen);
             }
         }
+        if let Some(answers) = &mut answers {
+            for (place, answered) in pixels.iter().zip(unit.answered) {
+                answers.set(*place, answered);
+            }
+        }
         statistics += unit.statistics;
         queries.extend(unit.queries);
     }
-    Ok(Rendered { film, mask, queries, statistics })
+    Ok(Rendered { film, mask, answers, queries, statistics })
 }

@@ -1,6 +1,6 @@
 //! What to render.
 
-use super::Order;
+use super::{Order, Shown};
 use crate::shadow::Path;
 
 /// Pixels in a picture at most: 16,384 squared, 3 GiB of film.
@@ -26,6 +26,8 @@ pub struct Settings {
     pub rows_per_unit: u32,
     /// Whether to keep the shadow mask.
     pub mask: bool,
+    /// Whether to keep how shadow queries were answered, and of which light.
+    pub answers: Option<Shown>,
     /// Whether to keep every shadow query.
     pub record: bool,
 }
@@ -41,6 +43,7 @@ impl Default for Settings {
             order: Order::Tiles,
             rows_per_unit: 8,
             mask: false,
+            answers: None,
             record: false,
         }
     }

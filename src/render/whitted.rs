@@ -6,6 +6,7 @@
 //!
 //! Whitted: An Improved Illumination Model for Shaded Display. Communications of the ACM 23(6), 1980.
 
+use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 
 use glam::{DVec2, Vec3};
@@ -13,9 +14,9 @@ use glam::{DVec2, Vec3};
 use super::film::Seen;
 use super::order::Place;
 use super::shading::{Surface, offset_of};
-use super::{Progress, Settings, Statistics};
+use super::{Answered, Progress, Settings, Statistics};
 use crate::geometry::{Ray, TriangleId};
-use crate::occlusion::Occlusion;
+use crate::occlusion::{Occlusion, Tally};
 use crate::scene::Scene;
 use crate::shadow::{Answer, Attenuation, Path, Prepared, ShadowQuery, Shadows};
 
@@ -41,6 +42,8 @@ pub(super) struct Done {
     pub colours: Vec<Vec3>,
     /// By pixel, then by light; empty if no mask was asked for.
     pub seen: Vec<Seen>,
+    /// By pixel; empty if not asked for.
+    pub answered: Vec<Answered>,
     pub queries: Vec<RecordedQuery>,
     pub statistics: Statistics,
 }
@@ -52,6 +55,8 @@ pub(super) struct Unit<'a> {
     shadows: Box<dyn Shadows + 'a>,
     settings: &'a Settings,
     offset: f64,
+    /// Whether shadow rays start on the surface, and leave out the triangle that they start on.
+    leaves_out_spawner: bool,
     attenuation: Attenuation,
     /// Radiance that each sample of the batch has gathered.
     gathered: Vec<Vec3>,
@@ -59,6 +64,8 @@ pub(super) struct Unit<'a> {
     queries: Vec<(ShadowQuery, u32)>,
     asked: Vec<ShadowQuery>,
     answers: Vec<Answer>,
+    /// What each answer cost, if that is to be shown.
+    costs: Vec<u64>,
 }
 
 /// A ray that sees, on its way.
@@ -98,42 +105,63 @@ impl<'a> Unit<'a> {
             shadows: shadows.worker(),
             settings,
             offset: offset_of(scene),
+            leaves_out_spawner: shadows.leaves_out_spawner(),
             attenuation: Attenuation::default(),
             gathered: Vec::new(),
             done: Done::default(),
             queries: Vec::new(),
             asked: Vec::new(),
             answers: Vec::new(),
+            costs: Vec::new(),
         }
     }
 
     pub(super) fn run(mut self, pixels: &[Place], progress: &Progress) -> Done {
-        let lights = self.scene.lights.len();
-        if self.settings.mask {
-            self.done.seen = vec![Seen::default(); pixels.len() * lights];
-        }
-        let samples = (self.settings.samples * self.settings.samples) as usize;
         if self.settings.order.batches() {
-            self.batch(pixels, 0..pixels.len() * samples, progress);
+            self.batch(pixels, 0..pixels.len() * self.samples_a_pixel(), progress);
         } else {
-            let mut row = None;
-            for sample in 0..pixels.len() * samples {
-                let y = pixels[sample / samples].1;
-                if row.replace(y).is_some_and(|before| before != y) {
-                    self.shadows.begin_scanline();
-                }
-                self.batch(pixels, sample..sample + 1, progress);
+            let mut row = 0..0;
+            while row.end < pixels.len() {
+                let y = pixels[row.end].1;
+                let length = pixels[row.end..].iter().take_while(|pixel| pixel.1 == y).count();
+                row = row.end..row.end + length;
+                self.scanline(pixels, row.clone(), progress);
             }
         }
+        self.finish()
+    }
+
+    /// Renders the pixels of one scanline, each sample by itself.
+    pub(super) fn scanline(&mut self, pixels: &[Place], row: Range<usize>, progress: &Progress) {
+        if row.start > 0 {
+            self.shadows.begin_scanline();
+        }
+        let samples = self.samples_a_pixel();
+        for sample in row.start * samples..row.end * samples {
+            self.batch(pixels, sample..sample + 1, progress);
+        }
+    }
+
+    pub(super) fn finish(mut self) -> Done {
         self.done.statistics.shadows = self.shadows.tally();
         self.done.statistics.transparent = self.attenuation.tally;
         self.done
     }
 
+    fn samples_a_pixel(&self) -> usize {
+        (self.settings.samples * self.settings.samples) as usize
+    }
+
     /// Renders some of the unit's samples together; they are numbered pixel by pixel.
-    fn batch(&mut self, pixels: &[Place], samples: std::ops::Range<usize>, progress: &Progress) {
+    fn batch(&mut self, pixels: &[Place], samples: Range<usize>, progress: &Progress) {
         let before = self.done.statistics.rays.total();
-        let a_pixel = (self.settings.samples * self.settings.samples) as usize;
+        let a_pixel = self.samples_a_pixel();
+        if self.settings.mask {
+            self.done.seen.resize(pixels.len() * self.scene.lights.len(), Seen::default());
+        }
+        if self.settings.answers.is_some() {
+            self.done.answered.resize(pixels.len(), Answered::default());
+        }
         self.gathered.clear();
         self.gathered.resize(samples.len(), Vec3::ZERO);
         let pixel_of = |sample: u32| (samples.start + sample as usize) / a_pixel;
@@ -209,7 +237,11 @@ impl<'a> Unit<'a> {
             }
             let lit = source.illuminate(vertex.surface.point);
             if lit.is_some_and(|light| vertex.surface.faces(&light)) {
-                let ray = source.shadow_ray(vertex.surface.origin_above());
+                let origin = match self.leaves_out_spawner {
+                    true => vertex.surface.point.as_vec3(),
+                    false => vertex.surface.origin_above(),
+                };
+                let ray = source.shadow_ray(origin);
                 let query = ShadowQuery { ray, path: vertex.path, spawner: vertex.triangle };
                 self.queries.push((query, index as u32));
             }
@@ -218,13 +250,20 @@ impl<'a> Unit<'a> {
         self.asked.extend(self.queries.iter().map(|(query, _)| *query));
         self.answers.clear();
         self.answers.resize(self.asked.len(), Answer::default());
-        self.shadows.answer(light, &self.asked, &mut self.answers);
+        let shown = self.settings.answers.is_some_and(|shown| shown.includes(light));
+        self.answer(light, shown);
         self.done.statistics.rays.shadow += self.asked.len() as u64;
 
         let transparent = self.scene.has_transparent();
-        for (&(query, index), answer) in self.queries.iter().zip(&self.answers) {
+        for (asked, (&(query, index), answer)) in self.queries.iter().zip(&self.answers).enumerate()
+        {
             let vertex = &vertices[index as usize];
             let (pixel_index, place) = pixel(vertex.sample);
+            if shown {
+                let answered = &mut self.done.answered[pixel_index];
+                answered.outcomes[answer.outcome as usize] += 1;
+                answered.cost += self.costs[asked];
+            }
             if self.settings.mask && vertex.path == Path::EYE {
                 let seen = &mut self.done.seen[pixel_index * self.scene.lights.len() + light];
                 seen.asked += 1;
@@ -243,9 +282,30 @@ impl<'a> Unit<'a> {
             let mut radiance =
                 vertex.surface.shade(self.scene.material(vertex.triangle), &illumination);
             if transparent {
-                radiance *= self.attenuation.transmittance(self.scene, self.backend, &query.ray);
+                let spawner = self.leaves_out_spawner.then_some(query.spawner);
+                let before = work(&self.attenuation.tally);
+                radiance *=
+                    self.attenuation.transmittance(self.scene, self.backend, &query.ray, spawner);
+                if shown {
+                    self.done.answered[pixel_index].cost += work(&self.attenuation.tally) - before;
+                }
             }
             self.gathered[vertex.sample as usize] += vertex.throughput * radiance;
+        }
+    }
+
+    /// Has the queries answered; one by one, noting what each costs, if they are to be shown.
+    fn answer(&mut self, light: usize, shown: bool) {
+        if !shown {
+            return self.shadows.answer(light, &self.asked, &mut self.answers);
+        }
+        self.costs.clear();
+        let mut before = work(&self.shadows.tally().backend);
+        for (query, answer) in self.asked.iter().zip(&mut self.answers) {
+            self.shadows.answer(light, std::slice::from_ref(query), std::slice::from_mut(answer));
+            let after = work(&self.shadows.tally().backend);
+            self.costs.push(after - before);
+            before = after;
         }
     }
 
@@ -295,4 +355,9 @@ impl<'a> Unit<'a> {
         }
         generation
     }
+}
+
+/// What the pictures of cost show.
+fn work(tally: &Tally) -> u64 {
+    tally.cells + tally.triangle_tests
 }

@@ -3,18 +3,49 @@
 //! A query asks verdicts first (prepared, shared, settle some queries as lit or blocked), then
 //! memories (owned by the worker, may only say "blocked", on a triangle's word), then the backend.
 //! For any content of any of them the answer is that of the backend alone, bit for bit.
+//!
+//! A method is a memory on a shelf, which says where memories live:
+//!
+//! | method | memory | shelf |
+//! | --- | --- | --- |
+//! | `trace` | none | |
+//! | `object-cache` | [`LastOccluder`] | [`PerLight`] |
+//! | `voxel-cache` | [`LastVoxel`] | [`PerLight`] |
+//! | `cache-tree` | [`LastVoxel`] | [`PerPath`] |
+//! | `cache-tree-tolerance` | [`Nearby`]`<LastVoxel>` | [`PerPath`] |
+//! | `woo` | [`LastCell`] | [`PerLight`] |
 
+mod cache_tree;
+mod caster;
+mod inquiry;
+mod memory;
 mod method;
+mod object_cache;
 mod query;
+mod shelf;
 mod tally;
+mod tolerance;
 mod trace;
 mod transparent;
+mod verdict;
+mod voxel_cache;
+mod woo;
 
-pub use method::{Method, MethodError, prepare};
+pub use cache_tree::PerPath;
+pub use caster::{Cached, Caster};
+pub use inquiry::{Direct, Inquiry, Retest, Sparing};
+pub use memory::{Forgetful, Memory};
+pub use method::{Method, MethodError, Plan, SelfShadow, prepare, prepare_behind};
+pub use object_cache::LastOccluder;
 pub use query::{Answer, Outcome, Path, ShadowQuery};
+pub use shelf::{PerLight, Shelf};
 pub use tally::ShadowTally;
+pub use tolerance::{Nearby, Tolerance};
 pub use trace::Trace;
 pub use transparent::Attenuation;
+pub use verdict::{Undecided, Verdict};
+pub use voxel_cache::LastVoxel;
+pub use woo::{Fronts, LastCell};
 
 /// A method made ready for one scene; shared by all workers.
 pub trait Prepared: Send + Sync {
@@ -24,6 +55,11 @@ pub trait Prepared: Send + Sync {
     /// Bytes of what was prepared, the backend apart.
     fn memory(&self) -> usize {
         0
+    }
+
+    /// Whether a query's own triangle is left out; its ray then starts on the surface itself.
+    fn leaves_out_spawner(&self) -> bool {
+        false
     }
 }
 

@@ -68,19 +68,44 @@ pub struct ShadowQuery {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
-    /// The backend found nothing.
-    #[default]
-    TraversalLit,
-    /// The backend found an occluder.
-    TraversalBlocked,
     /// A remembered triangle blocks.
     Object,
     /// A triangle of a remembered cell blocks.
     Voxel,
-    /// A prepared structure proved it lit.
-    VerdictLit,
+    /// The backend found an occluder.
+    TraversalBlocked,
+    /// The backend found nothing.
+    #[default]
+    TraversalLit,
     /// A prepared structure proved it blocked.
     VerdictBlocked,
+    /// A prepared structure proved it lit.
+    VerdictLit,
+}
+
+impl Outcome {
+    /// All of them, in the order of their discriminants.
+    pub const ALL: [Self; 6] = [
+        Self::Object,
+        Self::Voxel,
+        Self::TraversalBlocked,
+        Self::TraversalLit,
+        Self::VerdictBlocked,
+        Self::VerdictLit,
+    ];
+
+    /// The name in pictures and statistics.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Object => "object",
+            Self::Voxel => "voxel",
+            Self::TraversalBlocked => "traversal-blocked",
+            Self::TraversalLit => "traversal-lit",
+            Self::VerdictBlocked => "verdict-blocked",
+            Self::VerdictLit => "verdict-lit",
+        }
+    }
 }
 
 /// The answer to a query.

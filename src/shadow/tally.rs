@@ -20,6 +20,8 @@ pub struct ShadowTally {
     pub voxel_tested: u64,
     /// Those that it blocked.
     pub voxel_hits: u64,
+    /// Memories made, by all workers: lights, or nodes of cache trees.
+    pub memories: u64,
     /// Queries that a prepared structure proved lit.
     pub verdict_lit: u64,
     /// Queries that a prepared structure proved blocked.
@@ -52,6 +54,7 @@ impl std::ops::AddAssign for ShadowTally {
         self.object_hits += other.object_hits;
         self.voxel_tested += other.voxel_tested;
         self.voxel_hits += other.voxel_hits;
+        self.memories += other.memories;
         self.verdict_lit += other.verdict_lit;
         self.verdict_blocked += other.verdict_blocked;
         self.backend += other.backend;

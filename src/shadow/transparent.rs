@@ -20,9 +20,16 @@ pub struct Attenuation {
 
 impl Attenuation {
     /// The share of light, by colour, that passes all transparent triangles on a ray that no opaque
-    /// one blocks.
-    pub fn transmittance(&mut self, scene: &Scene, backend: &dyn Occlusion, ray: &Ray) -> Vec3 {
+    /// one blocks; `spawner` does not count, if one is named.
+    pub fn transmittance(
+        &mut self,
+        scene: &Scene,
+        backend: &dyn Occlusion,
+        ray: &Ray,
+        spawner: Option<TriangleId>,
+    ) -> Vec3 {
         backend.transparent(ray, &mut self.found, &mut self.tally);
-        self.found.iter().fold(Vec3::ONE, |product, &id| product * scene.material(id).transmission)
+        let others = self.found.iter().filter(|&&id| Some(id) != spawner);
+        others.fold(Vec3::ONE, |product, &id| product * scene.material(id).transmission)
     }
 }

@@ -18,7 +18,7 @@ use std::sync::{Arc, OnceLock};
 use embree_ffi::{Hit, Ray as EmbreeRay, Scene, Verdict};
 
 use super::nearest::distance;
-use super::{Cell, Grid, GridOptions, Nearest, Occluder, Occlusion, Tally};
+use super::{Cell, Grid, GridOptions, LeftOut, Nearest, Occluder, Occlusion, Tally};
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 pub use build::{EmbreeOptions, Isa, PacketWidth, Quality};
@@ -101,6 +101,34 @@ impl Occlusion for Embree {
 
     fn occluder_in(&self, cell: Cell, ray: &Ray, tally: &mut Tally) -> Option<Occluder> {
         self.companion().at_least.occluder_in(cell, ray, tally)
+    }
+
+    fn occluder_except(
+        &self,
+        ray: &Ray,
+        within: Option<Cell>,
+        left_out: &mut LeftOut,
+        tally: &mut Tally,
+    ) -> Option<Occluder> {
+        if within.is_some() {
+            return self.companion().at_least.occluder_except(ray, within, left_out, tally);
+        }
+        if !Self::admit(ray, tally) {
+            return None;
+        }
+        let mut found = None;
+        // What the lower bound missed, Embree may still meet: only the spawner is left out.
+        self.scene.occluded_with(&Self::ray(ray, OPAQUE), |hit| {
+            let triangle = self.triangle(hit);
+            if left_out.is_spawner(triangle) {
+                return Verdict::Reject;
+            }
+            found = Some((triangle, hit.t));
+            Verdict::Accept
+        });
+        let (triangle, t) = found?;
+        let cell = self.companion().grid.cell_at(ray.at(f64::from(t)));
+        Some(Occluder { triangle, cell })
     }
 
     fn meets(&self, triangle: TriangleId, ray: &Ray, tally: &mut Tally) -> bool {

@@ -1,0 +1,3 @@
+//! The measuring bench.
+
+pub mod paper;

@@ -1,0 +1,160 @@
+//! How the shadow queries of each pixel were answered, and what that cost: pictures of the method at
+//! work.
+
+use glam::Vec3;
+
+use super::Film;
+use super::label::{LINE_HEIGHT, text_width, write_text};
+use super::order::Place;
+use crate::shadow::Outcome;
+
+/// The light whose queries are shown; those of all together if none is named.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Shown {
+    /// Index of the light.
+    pub light: Option<u32>,
+}
+
+impl Shown {
+    /// Whether the queries of a light are.
+    #[must_use]
+    pub fn includes(self, light: usize) -> bool {
+        self.light.is_none_or(|shown| shown as usize == light)
+    }
+}
+
+/// The shadow queries of one pixel, those of reflected and refracted rays included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Answered {
+    /// Queries by outcome, in the order of [`Outcome::ALL`].
+    pub outcomes: [u32; Outcome::ALL.len()],
+    /// Cells visited and triangles tested for them, attenuation included.
+    pub cost: u64,
+}
+
+/// For every pixel, how its shadow queries were answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AnswerMap {
+    width: u32,
+    height: u32,
+    pixels: Vec<Answered>,
+}
+
+/// Nothing was asked.
+const UNASKED: Vec3 = Vec3::new(0.02, 0.03, 0.1);
+const INK: Vec3 = Vec3::splat(0.8);
+
+/// The colour of an outcome: the palette of Okabe and Ito, which the colour-blind can tell apart.
+fn colour_of(outcome: Outcome) -> Vec3 {
+    let [r, g, b]: [u8; 3] = match outcome {
+        Outcome::TraversalLit => [240, 228, 66],
+        Outcome::TraversalBlocked => [213, 94, 0],
+        Outcome::Object => [0, 158, 115],
+        Outcome::Voxel => [86, 180, 233],
+        Outcome::VerdictLit => [240, 240, 240],
+        Outcome::VerdictBlocked => [204, 121, 167],
+    };
+    Vec3::from([r, g, b].map(|value| decode(f32::from(value) / 255.0)))
+}
+
+/// From sRGB to linear.
+fn decode(value: f32) -> f32 {
+    if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
+/// Black, blue, red, yellow, white.
+fn heat(share: f32) -> Vec3 {
+    let stops = [
+        Vec3::ZERO,
+        Vec3::new(0.0, 0.05, 0.5),
+        Vec3::new(0.7, 0.02, 0.02),
+        Vec3::new(1.0, 0.8, 0.0),
+        Vec3::ONE,
+    ];
+    let place = share.clamp(0.0, 1.0) * (stops.len() - 1) as f32;
+    let below = (place as usize).min(stops.len() - 2);
+    stops[below].lerp(stops[below + 1], place - below as f32)
+}
+
+impl AnswerMap {
+    pub(super) fn new(width: u32, height: u32) -> Self {
+        let pixels = vec![Answered::default(); width as usize * height as usize];
+        Self { width, height, pixels }
+    }
+
+    pub(super) fn set(&mut self, (x, y): Place, answered: Answered) {
+        self.pixels[y as usize * self.width as usize + x as usize] = answered;
+    }
+
+    /// What happened at a pixel.
+    ///
+    /// # Panics
+    /// Outside the picture.
+    #[must_use]
+    pub fn at(&self, x: u32, y: u32) -> &Answered {
+        assert!(x < self.width && y < self.height, "({x}, {y}) is outside the picture");
+        &self.pixels[y as usize * self.width as usize + x as usize]
+    }
+
+    /// Each pixel in the mixture of its outcomes' colours, and below them what each colour means.
+    #[must_use]
+    pub fn outcome_picture(&self) -> Film {
+        let colours = Outcome::ALL.map(colour_of);
+        let occurs = |outcome: usize| self.pixels.iter().any(|pixel| pixel.outcomes[outcome] > 0);
+        let mut entries: Vec<(Vec3, String)> = (0..colours.len())
+            .filter(|&outcome| occurs(outcome))
+            .map(|outcome| (colours[outcome], Outcome::ALL[outcome].name().replace('-', " ")))
+            .collect();
+        entries.push((UNASKED, "not asked".to_owned()));
+        self.picture(&entries, |pixel| {
+            let asked: u32 = pixel.outcomes.iter().sum();
+            let mixture: Vec3 =
+                pixel.outcomes.iter().zip(colours).map(|(&n, colour)| n as f32 * colour).sum();
+            if asked == 0 { UNASKED } else { mixture / asked as f32 }
+        })
+    }
+
+    /// Each pixel by its cost, on a scale of squares, and below them what each colour means.
+    #[must_use]
+    pub fn cost_picture(&self) -> Film {
+        let most = self.pixels.iter().map(|pixel| pixel.cost).max().unwrap_or(0).max(1);
+        let entries: Vec<(Vec3, String)> = (0..=4)
+            .map(|quarter| {
+                let share = quarter as f32 / 4.0;
+                let cost = (most as f32 * share * share).round() as u64;
+                let unit = if quarter == 4 { " cells and tests" } else { "" };
+                (heat(share), format!("{cost}{unit}"))
+            })
+            .collect();
+        self.picture(&entries, |pixel| heat((pixel.cost as f32 / most as f32).sqrt()))
+    }
+
+    /// The pixels, and a legend below them: as many lines as the width asks for.
+    fn picture(&self, entries: &[(Vec3, String)], colour: impl Fn(&Answered) -> Vec3) -> Film {
+        let (mut x, mut line) = (0, 0);
+        let mut places = Vec::new();
+        for (_, text) in entries {
+            let width = LINE_HEIGHT + text_width(text);
+            if x > 0 && x + width > self.width {
+                (x, line) = (0, line + 1);
+            }
+            places.push((x, self.height + line * LINE_HEIGHT));
+            x += width;
+        }
+        let mut film = Film::new(self.width, self.height + (line + 1) * LINE_HEIGHT);
+        for (place, pixel) in self.pixels.iter().enumerate() {
+            let place = place as u32;
+            film.set((place % self.width, place / self.width), colour(pixel));
+        }
+        for ((colour, text), (x, y)) in entries.iter().zip(places) {
+            let right = self.width.min(x + LINE_HEIGHT - 2);
+            for place in
+                (y + 2..y + LINE_HEIGHT - 1).flat_map(|y| (x + 1..right).map(move |x| (x, y)))
+            {
+                film.set(place, *colour);
+            }
+            write_text(&mut film, (x + LINE_HEIGHT, y), text, INK);
+        }
+        film
+    }
+}
