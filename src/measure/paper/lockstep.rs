@@ -39,7 +39,7 @@ pub fn render_in_turns(
     meter: &Meter,
     progress: &Progress,
 ) -> Result<Vec<Taken>, SettingsError> {
-    let mut least = vec![vec![u64::MAX; settings.height as usize]; methods.len()];
+    let mut least = vec![vec![u64::MAX; methods.len()]; settings.height as usize];
     let mut taken = vec![Taken::default(); methods.len()];
     for repetition in 0..repetitions {
         let mut renders = methods
@@ -47,14 +47,14 @@ pub fn render_in_turns(
             .map(|method| Scanlines::new(scene, backend, &**method, settings))
             .collect::<Result<Vec<_>, _>>()?;
         let mut sums = vec![0; methods.len()];
-        for row in 0..settings.height as usize {
+        for (row, least) in least.iter_mut().enumerate() {
             for turn in 0..methods.len() {
                 let which = (turn + row + repetition) % methods.len();
                 let before = meter.read();
                 renders[which].advance(progress);
                 let spent = meter.read() - before;
                 sums[which] += spent;
-                least[which][row] = least[which][row].min(spent);
+                least[which] = least[which].min(spent);
             }
         }
         for ((taken, sum), render) in taken.iter_mut().zip(sums).zip(renders) {
@@ -62,8 +62,8 @@ pub fn render_in_turns(
             (taken.colours, taken.statistics) = render.finish();
         }
     }
-    for (taken, least) in taken.iter_mut().zip(least) {
-        taken.least = least.iter().sum();
+    for (which, taken) in taken.iter_mut().enumerate() {
+        taken.least = least.iter().map(|row| row[which]).sum();
     }
     Ok(taken)
 }
