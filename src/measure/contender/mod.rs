@@ -131,10 +131,8 @@ impl Choice {
     /// The backends that are meant.
     #[must_use]
     pub fn backends(&self) -> Vec<Backend> {
-        let is_sensible = |backend: &Backend| match backend {
-            Backend::Brute => false,
-            Backend::Embree => cfg!(feature = "embree"),
-            _ => true,
+        let is_sensible = |&backend: &Backend| {
+            backend != Backend::Brute && (backend != Backend::Embree || cfg!(feature = "embree"))
         };
         or_all(&self.backends, || Backend::ALL.into_iter().filter(is_sensible).collect())
     }
