@@ -1,5 +1,6 @@
 //! Every disagreement, a line each: for eyes, and as CSV.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::report::{bits, name_of};
@@ -7,6 +8,9 @@ use super::{Disagreement, Report};
 
 /// The first line of the CSV.
 const COLUMNS: &str = "contender,pixel_x,pixel_y,light,kind,said,exact,triangle,explained,origin_x,origin_y,origin_z,direction_x,direction_y,direction_z,end,bits";
+
+/// Contenders that are named for a query at most.
+const NAMES: usize = 6;
 
 impl Report {
     /// All disagreements as CSV (RFC 4180, with line feeds): the ray in decimals that read back to the same bits,
@@ -24,7 +28,7 @@ impl Report {
                 quoted(&self.contenders[found.contender].name),
                 found.light,
                 found.kind.name(),
-                said(found),
+                said(found.blocked),
                 name_of(found.exact),
                 if found.explained { "yes" } else { "no" },
                 found.ray.end,
@@ -34,36 +38,57 @@ impl Report {
         text
     }
 
-    /// The first disagreements in words, those that nothing explains before the others; and how many there are.
+    /// The first disputed queries in words, those with an answer that nothing explains before the others.
     #[must_use]
     pub fn listing(&self, most: usize) -> String {
-        let mut sorted: Vec<&Disagreement> = self.disagreements.iter().collect();
-        sorted.sort_by_key(|found| found.explained);
-        let mut text = String::new();
-        for found in sorted.iter().take(most) {
-            let (x, y) = found.pixel;
-            let triangle = found.triangle.map_or("none".to_owned(), |id| id.to_string());
-            let _ = writeln!(
-                text,
-                "  {}: pixel {x},{y} light {}: said {}, exact {}, triangle {triangle}, {}, ray {}",
-                self.contenders[found.contender].name,
-                found.light,
-                said(found),
-                name_of(found.exact),
-                if found.explained { "explained" } else { "UNEXPLAINED" },
-                bits(&found.ray)
-            );
+        let mut by_query: BTreeMap<usize, Vec<&Disagreement>> = BTreeMap::new();
+        for found in &self.disagreements {
+            by_query.entry(found.query).or_default().push(found);
         }
-        let more = sorted.len().saturating_sub(most);
+        let mut disputed: Vec<Vec<&Disagreement>> = by_query.into_values().collect();
+        disputed.sort_by_key(|found| found.iter().all(|found| found.explained));
+        let mut text = String::new();
+        for found in disputed.iter().take(most) {
+            self.describe(found, &mut text);
+        }
+        let more = disputed.len().saturating_sub(most);
         if more > 0 {
-            let _ = writeln!(text, "  and {more} more; --list FILE.csv or --stats FILE has all");
+            let _ =
+                writeln!(text, "and {more} more queries; --list FILE and --stats FILE have all");
         }
         text
     }
+
+    /// All that is wrong about one query.
+    fn describe(&self, found: &[&Disagreement], text: &mut String) {
+        let Disagreement { pixel: (x, y), light, exact, ray, .. } = *found[0];
+        let triangle = found.iter().find_map(|found| found.triangle);
+        let triangle = triangle.map_or(String::new(), |id| format!(" (triangle {id})"));
+        let (exact, bits) = (name_of(exact), bits(&ray));
+        let _ = writeln!(text, "pixel {x},{y} light {light}: {exact}{triangle}; ray {bits}");
+        for (blocked, explained) in [(false, false), (true, false), (false, true), (true, true)] {
+            let names: Vec<&str> = found
+                .iter()
+                .filter(|found| (found.blocked, found.explained) == (blocked, explained))
+                .map(|found| &self.contenders[found.contender].name[..])
+                .collect();
+            if let [first, rest @ ..] = &names[..] {
+                let said = said(blocked);
+                let explained = if explained { "" } else { ", UNEXPLAINED" };
+                let shown = rest
+                    .iter()
+                    .take(NAMES - 1)
+                    .fold((*first).to_owned(), |line, name| line + ", " + name);
+                let more = names.len().saturating_sub(NAMES);
+                let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+                let _ = writeln!(text, "  said to be {said}{explained} by {shown}{more}");
+            }
+        }
+    }
 }
 
-fn said(found: &Disagreement) -> &'static str {
-    if found.blocked { "blocked" } else { "clear" }
+fn said(blocked: bool) -> &'static str {
+    if blocked { "blocked" } else { "clear" }
 }
 
 /// A field of CSV.
