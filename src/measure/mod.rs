@@ -1,3 +1,6 @@
 //! The measuring bench.
 
+pub mod contender;
 pub mod paper;
+pub mod recording;
+pub mod wilson;
