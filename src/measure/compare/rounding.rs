@@ -191,8 +191,8 @@ fn box_is_met(ray: &Ray, bounds: &Bounds) -> bool {
     if bounds.min.abs().max(bounds.max.abs()).max_element() >= LARGEST {
         return false;
     }
-    // Entry and exit with their errors; the last is the interval itself, which is not rounded.
-    let mut slabs = [(0.0, f64::from(ray.end), 0.0); 4];
+    // Entry and exit with their error; the first is the interval itself, which is not rounded.
+    let mut slabs = vec![(0.0, f64::from(ray.end), 0.0)];
     for axis in 0..3 {
         let (low, high) = (f64::from(bounds.min[axis]), f64::from(bounds.max[axis]));
         let (origin, direction) = (f64::from(ray.origin[axis]), f64::from(ray.direction[axis]));
@@ -202,16 +202,16 @@ fn box_is_met(ray: &Ray, bounds: &Bounds) -> bool {
             if origin - low <= error || high - origin <= error {
                 return false;
             }
-            slabs[axis] = (f64::NEG_INFINITY, f64::INFINITY, 0.0);
+            slabs.push((f64::NEG_INFINITY, f64::INFINITY, 0.0));
         } else {
             let (a, b) = ((low - origin) / direction, (high - origin) / direction);
-            slabs[axis] = (a.min(b), a.max(b), error / direction.abs());
+            slabs.push((a.min(b), a.max(b), error / direction.abs()));
         }
     }
-    (0..4).all(|i| {
-        (0..4).all(|j| {
-            let ((enter, _, error), (_, leave, other)) = (slabs[i], slabs[j]);
-            i == j || leave - enter > CAUTION * (error + other)
-        })
+    slabs.iter().enumerate().all(|(i, (enter, _, error))| {
+        slabs
+            .iter()
+            .enumerate()
+            .all(|(j, (_, leave, other))| i == j || leave - enter > CAUTION * (error + other))
     })
 }
