@@ -44,7 +44,7 @@ pub struct EmbreeOptions {
     pub quality: Quality,
     /// Kernels to use; the best of this CPU if none are named.
     pub isa: Option<Isa>,
-    /// Packets for [`Occlusion::occluded_many`].
+    /// Packets for [`Occlusion::occluded_many`](crate::occlusion::Occlusion::occluded_many).
     pub width: PacketWidth,
     /// Whether packets are traced as coherent.
     pub coherent: bool,
