@@ -195,18 +195,15 @@ fn box_is_met(ray: &Ray, bounds: &Bounds) -> bool {
     let mut slabs = vec![(0.0, f64::from(ray.end), 0.0)];
     for axis in 0..3 {
         let (low, high) = (f64::from(bounds.min[axis]), f64::from(bounds.max[axis]));
-        let (origin, direction) = (f64::from(ray.origin[axis]), f64::from(ray.direction[axis]));
+        let origin = f64::from(ray.origin[axis]);
+        let direction = match f64::from(ray.direction[axis]) {
+            small if small.abs() < SMALLEST_COMPONENT => SMALLEST_COMPONENT,
+            direction => direction,
+        };
         // Reciprocal, difference and product, or two products: below 5u, and then CAUTION.
-        let error = ROUNDING * (origin.abs() + low.abs().max(high.abs()));
-        if direction.abs() < SMALLEST_COMPONENT {
-            if origin - low <= error || high - origin <= error {
-                return false;
-            }
-            slabs.push((f64::NEG_INFINITY, f64::INFINITY, 0.0));
-        } else {
-            let (a, b) = ((low - origin) / direction, (high - origin) / direction);
-            slabs.push((a.min(b), a.max(b), error / direction.abs()));
-        }
+        let error = ROUNDING * (origin.abs() + low.abs().max(high.abs())) / direction.abs();
+        let (a, b) = ((low - origin) / direction, (high - origin) / direction);
+        slabs.push((a.min(b), a.max(b), error));
     }
     slabs.iter().enumerate().all(|(i, (enter, _, error))| {
         slabs
