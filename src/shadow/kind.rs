@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::voxel_occlusion::VoxelOcclusion;
 use super::{Budget, Verdict};
 use crate::occlusion::Occlusion;
 use crate::scene::Scene;
@@ -12,35 +13,42 @@ use crate::scene::Scene;
 /// The verdicts, in the order in which they are asked: cheap ones first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum VerdictKind {}
+pub enum VerdictKind {
+    /// Voxels that all light reaches, or none (Woo & Amanatides 1990).
+    VoxelOcclusion,
+}
 
 impl VerdictKind {
     /// How many there are.
-    pub const COUNT: usize = 0;
+    pub const COUNT: usize = 1;
 
     /// All of them.
-    pub const ALL: [Self; Self::COUNT] = [];
+    pub const ALL: [Self; Self::COUNT] = [Self::VoxelOcclusion];
 
     /// Its place in [`Self::ALL`].
     #[must_use]
     pub fn index(self) -> usize {
-        match self {}
+        self as usize
     }
 
     /// The name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {}
+        match self {
+            Self::VoxelOcclusion => "voxel-occlusion",
+        }
     }
 
     /// Makes it ready for a scene before a backend, within the memory that is left.
     pub(super) fn prepare<'a>(
         self,
-        _scene: &Scene,
+        scene: &Scene,
         _backend: &'a dyn Occlusion,
-        _budget: &Arc<Budget>,
+        budget: &Arc<Budget>,
     ) -> Box<dyn Verdict + 'a> {
-        match self {}
+        match self {
+            Self::VoxelOcclusion => Box::new(VoxelOcclusion::new(scene, budget)),
+        }
     }
 }
 

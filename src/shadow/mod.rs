@@ -33,6 +33,8 @@ mod trace;
 mod transparent;
 mod verdict;
 mod voxel_cache;
+mod voxel_occlusion;
+mod voxels;
 mod woo;
 
 pub use budget::Budget;

@@ -15,13 +15,16 @@
 
 mod build;
 mod level;
+mod steps;
 mod voxelize;
 mod walk;
 
 use glam::DVec3;
-use level::{Content, Level};
+use level::Content;
+pub(crate) use level::Level;
+pub(crate) use steps::Steps;
 
-use super::clip::padding;
+use super::clip::{Clip, clip, padding};
 use super::{Cell, Visit, Walk};
 use crate::geometry::{Ray, TriangleId, Triangles};
 
@@ -115,6 +118,31 @@ impl Grid {
                 None => return self.cell(content),
             }
         }
+    }
+
+    /// A plain uniform grid of about so many voxels.
+    pub(crate) fn uniform(triangles: &Triangles, voxels: f64) -> Self {
+        let bounds = triangles.bounds().expect("there are triangles");
+        let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
+        let resolution = Some(resolution(extent, voxels));
+        Self::new(triangles, GridOptions { resolution, nested: false })
+    }
+
+    /// Where the voxels of the outermost grid are.
+    pub(crate) fn outermost(&self) -> &Level {
+        &self.levels[0]
+    }
+
+    /// What an outermost voxel that is not divided lists; opaque triangles first, in ascending order.
+    #[inline(always)]
+    pub(crate) fn listed(&self, index: usize) -> Cell {
+        self.cell(self.voxels[index])
+    }
+
+    /// The part of a ray that is in the grid.
+    #[inline]
+    pub(crate) fn clip(&self, ray: &Ray) -> Clip {
+        clip(ray, self.min, self.max)
     }
 
     /// The list of a voxel that is not divided.
