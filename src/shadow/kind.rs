@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::shadow_polygons::ShadowPolygons;
 use super::voxel_occlusion::VoxelOcclusion;
 use super::{Budget, Verdict};
 use crate::occlusion::Occlusion;
@@ -16,14 +17,16 @@ use crate::scene::Scene;
 pub enum VerdictKind {
     /// Voxels that all light reaches, or none (Woo & Amanatides 1990).
     VoxelOcclusion,
+    /// Shadow volumes, counted (Crow 1977; Eo & Kyung 1989).
+    ShadowPolygons,
 }
 
 impl VerdictKind {
     /// How many there are.
-    pub const COUNT: usize = 1;
+    pub const COUNT: usize = 2;
 
     /// All of them.
-    pub const ALL: [Self; Self::COUNT] = [Self::VoxelOcclusion];
+    pub const ALL: [Self; Self::COUNT] = [Self::VoxelOcclusion, Self::ShadowPolygons];
 
     /// Its place in [`Self::ALL`].
     #[must_use]
@@ -36,6 +39,7 @@ impl VerdictKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::VoxelOcclusion => "voxel-occlusion",
+            Self::ShadowPolygons => "shadow-polygons",
         }
     }
 
@@ -48,6 +52,7 @@ impl VerdictKind {
     ) -> Box<dyn Verdict + 'a> {
         match self {
             Self::VoxelOcclusion => Box::new(VoxelOcclusion::new(scene, budget)),
+            Self::ShadowPolygons => Box::new(ShadowPolygons::new(scene, budget)),
         }
     }
 }

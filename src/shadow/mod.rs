@@ -26,6 +26,7 @@ mod method;
 mod object_cache;
 mod plan;
 mod query;
+mod shadow_polygons;
 mod shelf;
 mod tally;
 mod tolerance;

@@ -24,8 +24,8 @@
 mod sheet;
 
 use std::ops::ControlFlow;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use super::voxels::{Neighbours, Shaft, Source, Voxels};
@@ -80,29 +80,11 @@ pub(super) struct VoxelOcclusion {
 }
 
 impl VoxelOcclusion {
-    pub fn new(scene: &Scene, budget: &Arc<Budget>) -> Self {
-        let triangles = &scene.triangles;
-        let before = budget.left();
+    pub fn new(scene: &Scene, budget: &Budget) -> Self {
         let bytes_a_voxel = scene.lights.len() as f64 * size_of::<u32>() as f64 / IN_A_WORD as f64;
         let mut notes = Vec::new();
-        let neighbours = Neighbours::bytes(triangles);
-        let voxels = budget.take(neighbours).then(|| {
-            let voxels = Voxels::within(triangles, DENSITY, bytes_a_voxel, budget);
-            if voxels.is_none() {
-                budget.give_back(neighbours);
-            }
-            voxels
-        });
-        let prepared = voxels.flatten().map(|(voxels, coarser)| {
-            if coarser {
-                let [x, y, z] = voxels.level().resolution;
-                notes.push(format!("{x} by {y} by {z} voxels only, to keep to the memory limit"));
-            }
-            (voxels, Neighbours::new(triangles))
-        });
-        if prepared.is_none() {
-            notes.push(format!("steps aside: {before} bytes of memory are too few for its voxels"));
-        }
+        let prepared =
+            Voxels::with_neighbours(&scene.triangles, DENSITY, bytes_a_voxel, budget, &mut notes);
         let source = |light| Source::new(light, &scene.bounds());
         let per_voxel = |light| PerVoxel { source: source(light), words: OnceLock::new() };
         let lights = scene.lights.iter().map(per_voxel).collect();

@@ -98,8 +98,8 @@ impl Iterator for Steps<'_> {
         };
         let crossing = self.crossings[axis];
         let step = Step { voxel: self.voxel, index: self.level.index(self.voxel) };
-        // Not `crossing > leave`: a NaN ends the walk.
-        self.ended = !(crossing <= self.leave) || !self.advance(axis);
+        let goes_on = crossing <= self.leave && self.advance(axis);
+        self.ended = !goes_on;
         Some(step)
     }
 }

@@ -47,7 +47,7 @@ impl Voxels {
     /// A grid with `density` voxels to a triangle, or coarser where the budget does not allow for it and
     /// another `bytes_a_voxel`, which are all taken from the budget. `None` where that leaves too few.
     /// Also says whether it had to be coarser.
-    pub fn within(
+    fn within(
         triangles: &Arc<Triangles>,
         density: f64,
         bytes_a_voxel: f64,
@@ -70,6 +70,32 @@ impl Voxels {
             }
             voxels /= COARSER;
         }
+        None
+    }
+
+    /// The same, and which triangles lie beyond whose edges; says in `notes` what the budget does not allow.
+    pub fn with_neighbours(
+        triangles: &Arc<Triangles>,
+        density: f64,
+        bytes_a_voxel: f64,
+        budget: &Budget,
+        notes: &mut Vec<String>,
+    ) -> Option<(Self, Neighbours)> {
+        let bytes = Neighbours::bytes(triangles);
+        let left = budget.left();
+        if budget.take(bytes) {
+            if let Some((voxels, coarser)) = Self::within(triangles, density, bytes_a_voxel, budget)
+            {
+                if coarser {
+                    let [x, y, z] = voxels.level().resolution;
+                    notes.push(format!("{x} by {y} by {z} voxels only, to keep the memory limit"));
+                }
+                return Some((voxels, Neighbours::new(triangles)));
+            }
+            budget.give_back(bytes);
+        }
+        notes
+            .push(format!("steps aside: the memory limit leaves {left} bytes, too few for voxels"));
         None
     }
 

@@ -64,7 +64,7 @@ impl Shaft {
         let (ahead, behind) = (far.low - near.high, near.low - far.high);
         let gaps = ahead.max(behind);
         let axis = (0..3).max_by(|&a, &b| gaps[a].total_cmp(&gaps[b]))?;
-        if !(gaps[axis] > 0.0) {
+        if gaps[axis] <= 0.0 {
             return None;
         }
         let forward = ahead[axis] > 0.0;

@@ -49,7 +49,7 @@ impl Source {
         let origins =
             Span { low: scene.min.as_dvec3() - margin, high: scene.max.as_dvec3() + margin };
         let wide = place.as_dvec3();
-        if !wide.is_finite() || !(diagonal > 0.0) || (!is_point && place == Vec3::ZERO) {
+        if !wide.is_finite() || diagonal <= 0.0 || (!is_point && place == Vec3::ZERO) {
             return None;
         }
         let (slack, beyond) = if is_point {
@@ -71,6 +71,15 @@ impl Source {
             ray.end == f32::INFINITY && ray.direction == self.place
         };
         aimed && self.origins.contains(ray.origin.as_dvec3())
+    }
+
+    /// The way from a point to it, and how far along each axis rays may end off it.
+    #[inline]
+    pub fn towards(&self, point: DVec3) -> (DVec3, DVec3) {
+        match self.is_point {
+            true => (self.place.as_dvec3() - point, self.slack),
+            false => (self.place.as_dvec3(), DVec3::ZERO),
+        }
     }
 
     /// A ray towards it.
