@@ -4,14 +4,16 @@ mod common;
 #[path = "common/rooms.rs"]
 mod rooms;
 
-use common::{Random, soup, sphere};
+use common::{REAL_SCENES, Random, real_scenes, soup, sphere};
 use glam::{Vec3, vec3};
 use umbra::exact::{Verdict, oracle::verdict_of_scene};
 use umbra::geometry::Triangle;
 use umbra::occlusion::{Backend, BuildOptions, Occlusion, Tally, Test, build};
-use umbra::scene::{Draft, DraftTriangle, Light, Scene};
+use umbra::render::{Order, Progress, Rendered, Settings, Shown, render};
+use umbra::scene::{Draft, DraftTriangle, Light, Scene, builtin, load};
 use umbra::shadow::{
-    Answer, Combination, Method, Outcome, Path, Settled, ShadowQuery, VerdictKind, prepare,
+    Answer, Combination, Method, MethodError, Outcome, Path, Plan, SelfShadow, Settled,
+    ShadowQuery, VerdictKind, prepare,
 };
 
 fn point(position: Vec3) -> Light {
@@ -202,5 +204,181 @@ fn verdicts_are_exact_on_meshes_closed_open_and_not_manifold() {
         for (kind, settled) in VerdictKind::ALL.iter().zip(check(&scene(&mesh, all), 150, 5, 11)) {
             assert!(settled.lit + settled.blocked > 0, "{kind}, {name}: {settled:?}");
         }
+    }
+}
+
+fn picture(scene: &Scene, backend: &dyn Occlusion, plan: impl Into<Plan>) -> Rendered {
+    let shadows = prepare(plan, scene, backend).unwrap();
+    let settings = Settings {
+        width: 40,
+        height: 30,
+        order: Order::Tiles,
+        mask: true,
+        answers: Some(Shown::default()),
+        ..Settings::default()
+    };
+    render(scene, backend, &*shadows, &settings, &Progress::default()).unwrap()
+}
+
+fn assert_same(found: &Rendered, expected: &Rendered, what: &str) {
+    assert!(found.film == expected.film, "{what}: other colours");
+    assert!(found.mask == expected.mask, "{what}: other shadows");
+}
+
+#[test]
+fn verdicts_change_no_picture_of_a_builtin_scene_over_any_backend() {
+    for name in builtin::NAMES {
+        let scene = builtin::draft_at(name, 0.02).unwrap().finish().unwrap();
+        for (backend_name, backend) in backends(&scene) {
+            // Embree has no exact test: what verdicts say before it is judged on soups.
+            if matches!(backend_name, Backend::Embree | Backend::Brute) {
+                continue;
+            }
+            let expected = picture(&scene, &*backend, Method::Trace);
+            for kind in VerdictKind::ALL {
+                for method in [Method::Trace, Method::CacheTree] {
+                    let combination = Combination { method, ..kind.into() };
+                    let found = picture(&scene, &*backend, combination);
+                    assert_same(&found, &expected, &format!("{name} {backend_name} {combination}"));
+                    let tally = found.statistics.shadows;
+                    assert!(tally.verdict_lit > 0, "{name} {combination}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn verdicts_change_no_picture_of_a_real_scene() {
+    let Some(folder) = real_scenes() else { return };
+    for name in REAL_SCENES {
+        let scene = load(folder.join(name).to_str().unwrap()).unwrap();
+        let options = BuildOptions::default();
+        let backend = build(Backend::Grid, Test::Exact, &scene.triangles, &options).unwrap();
+        let expected = picture(&scene, &*backend, Method::Trace);
+        for kind in VerdictKind::ALL {
+            let found = picture(&scene, &*backend, kind);
+            assert_same(&found, &expected, &format!("{name} {kind}"));
+        }
+    }
+}
+
+#[test]
+fn all_verdicts_go_together() {
+    let scene = rooms::glass_room();
+    let all = VerdictKind::ALL.into_iter();
+    let verdicts = all.fold(Combination::default().verdicts, |set, kind| set.with(kind));
+    for (name, backend) in backends(&scene).into_iter().filter(|(n, _)| *n != Backend::Embree) {
+        let expected = picture(&scene, &*backend, Method::Trace);
+        let found = picture(&scene, &*backend, Combination { verdicts, method: Method::Woo });
+        assert_same(&found, &expected, &name.to_string());
+        // Each is asked what those before it passed on.
+        let tally = found.statistics.shadows;
+        let mut asked = tally.queries;
+        for settled in tally.verdicts {
+            assert_eq!(settled.lit + settled.blocked + settled.passed_on, asked);
+            asked = settled.passed_on;
+        }
+    }
+}
+
+#[test]
+fn pictures_of_the_answers_show_what_verdicts_settled() {
+    let scene = rooms::glass_room();
+    let (_, grid) = &backends(&scene)[0];
+    for kind in VerdictKind::ALL {
+        let found = picture(&scene, &**grid, kind);
+        let (map, tally) = (found.answers.unwrap(), found.statistics.shadows);
+        let mut sums = [0u64; Outcome::ALL.len()];
+        for (x, y) in (0..30).flat_map(|y| (0..40).map(move |x| (x, y))) {
+            for (sum, n) in sums.iter_mut().zip(map.at(x, y).outcomes) {
+                *sum += u64::from(n);
+            }
+        }
+        assert!(tally.verdict_lit > 0 && tally.verdict_blocked > 0, "{kind}");
+        assert_eq!(sums[Outcome::VerdictLit as usize], tally.verdict_lit);
+        assert_eq!(sums[Outcome::VerdictBlocked as usize], tally.verdict_blocked);
+    }
+}
+
+#[test]
+fn counts_are_the_same_for_any_number_of_threads() {
+    let scene = rooms::glass_room();
+    let (_, grid) = &backends(&scene)[0];
+    for kind in VerdictKind::ALL {
+        let statistics = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| picture(&scene, &**grid, kind)).statistics
+        };
+        assert_eq!(statistics(1), statistics(3), "{kind}");
+    }
+}
+
+#[test]
+fn nothing_is_lost_when_the_memory_limit_shrinks_a_structure_to_nothing() {
+    let scene = rooms::small_chair_room();
+    let (_, grid) = &backends(&scene)[0];
+    let expected = picture(&scene, &**grid, Method::Trace);
+    for kind in VerdictKind::ALL {
+        let mut settled = Vec::new();
+        for bytes in [u64::MAX, 1 << 21, 1 << 20, 1 << 19, 1 << 17, 1 << 10, 0] {
+            let budget = bytes.saturating_add(grid.memory() as u64);
+            let plan = Plan { budget: Some(budget), ..kind.into() };
+            let what = format!("{kind} within {bytes} bytes");
+            let found = picture(&scene, &**grid, plan);
+            assert_same(&found, &expected, &what);
+
+            let prepared = prepare(plan, &scene, &**grid).unwrap();
+            let settings = Settings { width: 40, height: 30, ..Settings::default() };
+            render(&scene, &**grid, &*prepared, &settings, &Progress::default()).unwrap();
+            assert!(prepared.memory() as u64 <= bytes, "{what}: {} bytes", prepared.memory());
+            let [report] = &prepared.verdicts()[..] else { panic!("one verdict, one report") };
+            assert_eq!((report.verdict, report.bytes), (kind, prepared.memory()));
+            let shadows = found.statistics.shadows;
+            let now = shadows.verdict_lit + shadows.verdict_blocked;
+            if settled.first().is_some_and(|&all| now < all) {
+                assert!(!report.notes.is_empty(), "{what}: says nothing");
+            }
+            settled.push(now);
+        }
+        assert!(settled[0] > 0 && *settled.last().unwrap() == 0, "{kind}: {settled:?}");
+        assert!(settled.windows(2).any(|pair| pair[1] < pair[0] && pair[1] > 0), "{settled:?}");
+    }
+}
+
+#[test]
+fn a_verdict_does_not_go_with_leaving_out_the_spawner() {
+    let scene = rooms::glass_room();
+    let (_, grid) = &backends(&scene)[0];
+    for kind in VerdictKind::ALL {
+        let plan = Plan { self_shadow: SelfShadow::Exclude, ..kind.into() };
+        let refused = prepare(plan, &scene, &**grid).err().unwrap();
+        assert!(matches!(refused, MethodError::LeavesOut(_)), "{refused}");
+    }
+}
+
+#[test]
+fn rays_that_do_not_go_to_the_light_are_passed_on() {
+    let scene = rooms::glass_room();
+    let (_, grid) = &backends(&scene)[0];
+    let good = scene.lights[0].shadow_ray(vec3(0.1, 0.2, 0.3));
+    let mut strange = [good; 6];
+    strange[0].direction *= 0.5;
+    strange[1].end = f32::INFINITY;
+    strange[2].end = 0.5;
+    strange[3].origin = Vec3::NAN;
+    strange[4] = scene.lights[2].shadow_ray(good.origin);
+    strange[5] = scene.lights[0].shadow_ray(Vec3::splat(1e7));
+    for kind in VerdictKind::ALL {
+        let prepared = prepare(kind, &scene, &**grid).unwrap();
+        let mut worker = prepared.worker();
+        for ray in strange {
+            let mut answer = [Answer::default()];
+            worker.answer(0, &[ShadowQuery { ray, path: Path::EYE, spawner: 0 }], &mut answer);
+            assert_eq!(answer[0].blocked, grid.occluded(&ray, &mut Tally::default()), "{ray:?}");
+        }
+        let tally = worker.tally();
+        assert_eq!(tally.verdicts[kind.index()].passed_on, 6, "{kind}");
+        assert_eq!(tally.backend.invalid_rays, 1);
     }
 }

@@ -10,7 +10,7 @@ use super::{Grid, PADDING, resolution};
 use crate::geometry::{Bounds, TriangleId, Triangles};
 
 /// A voxel with more triangles than this is divided.
-const CROWDED: usize = 16;
+pub(super) const CROWDED: usize = 16;
 
 /// Voxels to a triangle of the grid in a crowded voxel.
 const DENSITY: f64 = 2.0;
@@ -82,13 +82,42 @@ pub(super) fn build(triangles: &Triangles, outermost: Level, nested: bool) -> Gr
             None => grid.add_list(sorted.list(voxel)),
         };
     }
-    grid.starts.push(end_of(&grid.order));
-    grid.starts.shrink_to_fit();
-    grid.order.shrink_to_fit();
+    grid.seal();
     grid
 }
 
+/// A grid of its own for a crowded voxel of an outermost grid; `None` where that gains too little.
+pub(super) fn divide(
+    triangles: &Triangles,
+    scene: Bounds,
+    outermost: &Level,
+    voxel: usize,
+    list: &[TriangleId],
+) -> Option<Grid> {
+    let division = Divider { triangles, scene }.divide(outermost, voxel, list, 1)?;
+    let level = &division.level;
+    let mut grid = Grid {
+        // The walk around may err as much as the padding allows.
+        min: level.min - outermost.pad,
+        max: level.corner(level.resolution) + outermost.pad,
+        levels: Vec::new(),
+        voxels: Vec::new(),
+        starts: Vec::new(),
+        order: Vec::new(),
+    };
+    grid.add_division(division);
+    grid.seal();
+    Some(grid)
+}
+
 impl Grid {
+    /// Nothing is added any more.
+    fn seal(&mut self) {
+        self.starts.push(end_of(&self.order));
+        self.starts.shrink_to_fit();
+        self.order.shrink_to_fit();
+    }
+
     fn add_list(&mut self, list: &[TriangleId]) -> Content {
         if list.is_empty() {
             return Content::EMPTY;

@@ -15,6 +15,8 @@ pub(crate) struct Step {
     pub voxel: [u32; 3],
     /// Its place among those of all grids.
     pub index: usize,
+    /// `t` at which the ray leaves it.
+    pub leave: f64,
 }
 
 /// Goes from voxel to voxel.
@@ -97,7 +99,8 @@ impl Iterator for Steps<'_> {
             2
         };
         let crossing = self.crossings[axis];
-        let step = Step { voxel: self.voxel, index: self.level.index(self.voxel) };
+        let index = self.level.index(self.voxel);
+        let step = Step { voxel: self.voxel, index, leave: crossing };
         let goes_on = crossing <= self.leave && self.advance(axis);
         self.ended = !goes_on;
         Some(step)
