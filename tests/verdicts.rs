@@ -139,7 +139,7 @@ fn lights(mesh: &[Triangle], random: &mut Random) -> Vec<Light> {
 #[test]
 fn verdicts_are_exact_on_soups() {
     let mut sum = [Settled::default(); VerdictKind::COUNT];
-    for seed in 0..24 {
+    for seed in 0..12 {
         let mut random = Random(seed);
         let (count, size) = [(12, 1.5), (40, 0.6), (300, 0.3)][seed as usize % 3];
         let mut mesh = soup(count, size, seed);
@@ -149,12 +149,12 @@ fn verdicts_are_exact_on_soups() {
             mesh = mesh.iter().map(|corners| corners.map(snap)).collect();
         }
         let lights = lights(&mesh, &mut random);
-        for (sum, settled) in sum.iter_mut().zip(check(&scene(&mesh, lights), 60, 3, seed)) {
+        for (sum, settled) in sum.iter_mut().zip(check(&scene(&mesh, lights), 60, 20, seed)) {
             *sum += settled;
         }
     }
     for (kind, settled) in VerdictKind::ALL.iter().zip(sum) {
-        assert!(settled.lit > 1000 && settled.blocked > 1000, "{kind}: {settled:?}");
+        assert!(settled.lit > 500 && settled.blocked > 500, "{kind}: {settled:?}");
     }
 }
 
@@ -201,7 +201,7 @@ fn verdicts_are_exact_on_meshes_closed_open_and_not_manifold() {
         let mut random = Random(7);
         let mut all = lights(&mesh, &mut random);
         all.extend([point(Vec3::ZERO), point(vec3(0., 3., 0.)), point(vec3(0.05, -0.7, 0.1))]);
-        for (kind, settled) in VerdictKind::ALL.iter().zip(check(&scene(&mesh, all), 150, 5, 11)) {
+        for (kind, settled) in VerdictKind::ALL.iter().zip(check(&scene(&mesh, all), 150, 50, 11)) {
             assert!(settled.lit + settled.blocked > 0, "{kind}, {name}: {settled:?}");
         }
     }
@@ -321,7 +321,7 @@ fn nothing_is_lost_when_the_memory_limit_shrinks_a_structure_to_nothing() {
     let expected = picture(&scene, &**grid, Method::Trace);
     for kind in VerdictKind::ALL {
         let mut settled = Vec::new();
-        for bytes in [u64::MAX, 1 << 21, 1 << 20, 1 << 19, 1 << 17, 1 << 10, 0] {
+        for bytes in std::iter::once(u64::MAX).chain((0..22).rev().map(|power| 1 << power)) {
             let budget = bytes.saturating_add(grid.memory() as u64);
             let plan = Plan { budget: Some(budget), ..kind.into() };
             let what = format!("{kind} within {bytes} bytes");

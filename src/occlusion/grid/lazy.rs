@@ -25,6 +25,10 @@ use crate::occlusion::{Cell, Visit, Walk};
 /// A divided voxel with more triangles than this is not remembered: testing all would cost more than a walk.
 const MOST_REMEMBERED: u32 = 64;
 
+/// What is named instead: a cell that no order has, so that a memory takes it for none, and that no cell
+/// holds, so that a mailbox never takes it for tested.
+const NO_CELL: Cell = Cell { start: 0, end: u32::MAX };
+
 /// The grid of a crowded voxel, when it is known whether dividing it gains anything.
 type Inside = OnceLock<Option<Box<Grid>>>;
 
@@ -124,12 +128,8 @@ struct Parts<'v, V: ?Sized> {
 
 impl<'v, V: Visit + ?Sized> Parts<'v, V> {
     fn of(cell: Cell, visitor: &'v mut V) -> Self {
-        let cell = match cell.end - cell.start <= MOST_REMEMBERED {
-            true => cell,
-            // An empty cell, inside this one and no other: part of nothing but this one that was tested.
-            false => Cell { start: cell.start + 1, end: cell.start + 1 },
-        };
-        Self { cell, visitor, visited: ControlFlow::Continue(()) }
+        let few = cell.end - cell.start <= MOST_REMEMBERED;
+        Self { cell: if few { cell } else { NO_CELL }, visitor, visited: ControlFlow::Continue(()) }
     }
 }
 
