@@ -3,9 +3,9 @@
 
 use glam::Vec3;
 
-use super::Film;
 use super::label::{LINE_HEIGHT, text_width, write_text};
 use super::order::Place;
+use super::{Film, palette};
 use crate::shadow::Outcome;
 
 /// The light whose queries are shown; those of all together if none is named.
@@ -44,22 +44,16 @@ pub struct AnswerMap {
 const UNASKED: Vec3 = Vec3::new(0.02, 0.03, 0.1);
 const INK: Vec3 = Vec3::splat(0.8);
 
-/// The colour of an outcome: the palette of Okabe and Ito, which the colour-blind can tell apart.
+/// The colour of an outcome.
 fn colour_of(outcome: Outcome) -> Vec3 {
-    let [r, g, b]: [u8; 3] = match outcome {
-        Outcome::TraversalLit => [240, 228, 66],
-        Outcome::TraversalBlocked => [213, 94, 0],
-        Outcome::Object => [0, 158, 115],
-        Outcome::Voxel => [86, 180, 233],
+    palette::linear(match outcome {
+        Outcome::TraversalLit => palette::YELLOW,
+        Outcome::TraversalBlocked => palette::VERMILLION,
+        Outcome::Object => palette::BLUISH_GREEN,
+        Outcome::Voxel => palette::SKY_BLUE,
         Outcome::VerdictLit => [240, 240, 240],
-        Outcome::VerdictBlocked => [204, 121, 167],
-    };
-    Vec3::from([r, g, b].map(|value| decode(f32::from(value) / 255.0)))
-}
-
-/// From sRGB to linear.
-fn decode(value: f32) -> f32 {
-    if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        Outcome::VerdictBlocked => palette::REDDISH_PURPLE,
+    })
 }
 
 /// Black, blue, red, yellow, white.
