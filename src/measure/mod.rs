@@ -1,3 +1,5 @@
 //! The measuring bench.
 
 pub mod paper;
+pub mod report;
+pub mod tradeoff;

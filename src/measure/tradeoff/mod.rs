@@ -1,0 +1,2 @@
+//! Speed against accuracy, measured.
+pub mod pareto;
