@@ -30,7 +30,7 @@ pub struct Mark {
     pub y_spread: Option<[f64; 2]>,
     /// Hue and shape.
     pub look: Look,
-    /// What it is: written beside it if it is on the front and there is room.
+    /// Written beside it where there is room; nothing if empty.
     pub label: String,
     /// What a pointer that rests on it shows.
     pub tooltip: String,
@@ -282,8 +282,12 @@ impl Plot<'_> {
         }
         let area = Boxed { left: LEFT, right: LEFT + self.width, top: TOP, bottom: TOP + HEIGHT };
         let mut labels = Labels::new(area, &places);
-        // From the fastest down: that is the one that most look for.
-        for &mark in self.chart.front.iter().rev() {
+        // From the right, where there is least room.
+        let mut labelled: Vec<usize> = (0..self.chart.marks.len())
+            .filter(|&mark| !self.chart.marks[mark].label.is_empty())
+            .collect();
+        labelled.sort_by(|&a, &b| places[b].0.total_cmp(&places[a].0));
+        for mark in labelled {
             let text = &self.chart.marks[mark].label;
             if let Some((x, y)) = labels.put(places[mark], text_width(text, LABEL_SIZE)) {
                 put(
