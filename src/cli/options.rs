@@ -10,7 +10,7 @@ use super::failure::{Failure, say};
 use super::progress::with_word;
 use crate::occlusion::{Backend, BuildOptions, GridOptions, Occlusion, Test, build};
 use crate::scene::Scene;
-use crate::shadow::{Method, Plan, Retest, SelfShadow};
+use crate::shadow::{Combination, Method, Plan, Retest, SelfShadow};
 use crate::whole_file::{folder_of, write_whole};
 
 /// Which engine answers.
@@ -29,9 +29,32 @@ pub(super) struct EngineOptions {
     /// A plain uniform grid: crowded voxels are not divided
     #[arg(long)]
     pub uniform: bool,
+    /// Most memory that engine and shadow method may take, like 512M or 2G: what is prepared becomes coarser
+    /// or steps aside, and says so; a quarter of the machine if not given
+    #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
+    pub memory: Option<u64>,
     /// Threads; all processors if not given
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
+}
+
+/// A number of bytes, with K, M, G or T for powers of 1024.
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    let number = text.trim_end_matches(['B', 'b']).trim_end_matches('i');
+    let digits = number.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let shift = match &number[digits.len()..] {
+        "" => Some(0),
+        "K" | "k" => Some(10),
+        "M" | "m" => Some(20),
+        "G" | "g" => Some(30),
+        "T" | "t" => Some(40),
+        _ => None,
+    };
+    let bytes = digits.parse::<f64>().ok().filter(|number| *number >= 0.0 && number.is_finite());
+    let (Some(bytes), Some(shift)) = (bytes, shift) else {
+        return Err("give it as bytes, or like 512M or 2.5G".to_owned());
+    };
+    Ok((bytes * f64::from(shift).exp2()) as u64)
 }
 
 fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
@@ -86,9 +109,8 @@ impl EngineOptions {
 /// What stands before the engine.
 #[derive(Args)]
 pub(super) struct ShadowOptions {
-    /// The method that stands before the engine
-    #[arg(long, value_enum, default_value_t)]
-    pub shadows: Method,
+    #[arg(long, value_name = "METHOD", default_value_t, help = shadows_help())]
+    pub shadows: Combination,
     /// What keeps a shadow ray from meeting the triangle that it starts on
     #[arg(long, value_enum, default_value_t)]
     self_shadow: SelfShadow,
@@ -107,11 +129,18 @@ pub(super) struct ShadowOptions {
     tolerance: f32,
 }
 
+/// Names every method.
+fn shadows_help() -> String {
+    format!("What stands before the engine: {}", Combination::names())
+}
+
 impl ShadowOptions {
     /// The method with its options.
     pub fn plan(&self) -> Plan {
         Plan {
-            method: self.shadows,
+            verdicts: self.shadows.verdicts,
+            budget: None,
+            method: self.shadows.method,
             self_shadow: self.self_shadow,
             retest: self.retest,
             reset_scanlines: self.reset_scanlines,
