@@ -90,4 +90,5 @@ input!(
     crate::render::SettingsError,
     crate::render::OutputError,
     crate::measure::paper::PaperError,
+    crate::measure::tradeoff::TradeoffError,
 );

@@ -7,6 +7,7 @@ mod progress;
 mod query;
 mod render;
 mod scene;
+mod tradeoff;
 
 use std::process::ExitCode;
 
@@ -23,6 +24,7 @@ Exit status: 0 done; 1 a comparison failed; 2 bad input, and nothing was written
 Examples:
   umbra render chair-room -o room.png
   umbra query chair-room --rays rays.csv -o blocked.csv
+  umbra tradeoff chair-room --html tradeoff.html
   umbra paper --quick
   umbra scene drum -o drum.glb";
 
@@ -38,6 +40,7 @@ struct Cli {
 enum Command {
     Render(render::Render),
     Query(query::Query),
+    Tradeoff(tradeoff::Tradeoff),
     Paper(paper::Paper),
     Scene(scene::SceneFile),
 }
@@ -48,6 +51,7 @@ pub fn main() -> ExitCode {
     let outcome = match Cli::try_parse() {
         Ok(Cli { command: Command::Render(render) }) => render.run(),
         Ok(Cli { command: Command::Query(query) }) => query.run(),
+        Ok(Cli { command: Command::Tradeoff(tradeoff) }) => tradeoff.run(),
         Ok(Cli { command: Command::Paper(paper) }) => paper.run(),
         Ok(Cli { command: Command::Scene(scene) }) => scene.run(),
         Err(error) => match error.kind() {

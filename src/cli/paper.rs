@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{check_outputs, parse_size, write_json};
+use super::options::{check_outputs, parse_size, pool, print, write_json};
 use super::progress::with_bar;
 use crate::measure::paper::{
     Conditions, NODE_BYTES, Published, SceneReport, Storage, TABLE, reproduce, storage,
@@ -107,8 +107,7 @@ impl Paper {
         let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[])?;
         // One thread, which is the one whose work is counted.
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-        let pool = pool.map_err(|e| Failure::Input(format!("cannot start a thread: {e}")))?;
+        let pool = pool(Some(1))?;
         let mut scenes = Vec::new();
         for published in self.scenes() {
             let progress = Progress::default();
@@ -140,10 +139,4 @@ fn is_offered(backend: Backend) -> bool {
         Backend::Embree => cfg!(feature = "embree"),
         Backend::Brute => false,
     }
-}
-
-/// To standard output.
-fn print(text: &str) -> Result<(), Failure> {
-    use std::io::Write;
-    std::io::stdout().write_all(text.as_bytes()).map_err(|_| Failure::NoReader)
 }

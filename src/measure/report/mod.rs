@@ -6,8 +6,10 @@ mod chart;
 mod labels;
 mod look;
 mod markup;
+mod page;
 
 pub use axis::LogAxis;
 pub use chart::{Chart, Dimension, Mark, document};
 pub use look::{Hue, Look, Shape, style};
 pub use markup::{escape, png_uri};
+pub use page::{Cell, Page, Shown};

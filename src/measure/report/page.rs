@@ -83,7 +83,13 @@ impl Page {
             include_str!("page.css"),
             style()
         );
-        put(&mut body, format_args!("<header>\n<h1>{title}</h1>\n<p>{}</p>\n</header>\n<main>\n", escape(lead)));
+        put(
+            &mut body,
+            format_args!(
+                "<header>\n<h1>{title}</h1>\n<p>{}</p>\n</header>\n<main>\n",
+                escape(lead)
+            ),
+        );
         Self { body, tables: 0 }
     }
 
@@ -104,7 +110,10 @@ impl Page {
 
     /// A paragraph with a command line.
     pub fn command(&mut self, before: &str, command: &str) {
-        put(&mut self.body, format_args!("<p>{} <code>{}</code></p>\n", escape(before), escape(command)));
+        put(
+            &mut self.body,
+            format_args!("<p>{} <code>{}</code></p>\n", escape(before), escape(command)),
+        );
     }
 
     /// A list.
@@ -118,10 +127,14 @@ impl Page {
 
     /// A chart, drawn once for desks and once for phones.
     pub fn chart(&mut self, chart: &Chart) {
-        put(&mut self.body, format_args!(
-            "<figure>\n<div class=\"wide\">{}</div>\n<div class=\"narrow\">{}</div>\n</figure>\n",
-            chart.svg(WIDE), chart.svg(NARROW)
-        ));
+        put(
+            &mut self.body,
+            format_args!(
+                "<figure>\n<div class=\"wide\">{}</div>\n<div class=\"narrow\">{}</div>\n</figure>\n",
+                chart.svg(WIDE),
+                chart.svg(NARROW)
+            ),
+        );
     }
 
     /// A table that sorts; with a filter of its first column if it is to have one. Rows that are marked
@@ -130,23 +143,35 @@ impl Page {
         self.tables += 1;
         let id = format!("table-{}", self.tables);
         if let Some(filter) = filter {
-            put(&mut self.body, format_args!(
-                "<label class=\"filter\" data-table=\"{id}\" hidden=\"\">{} <input type=\"search\"/></label>\n",
-                escape(filter)
-            ));
+            put(
+                &mut self.body,
+                format_args!(
+                    "<label class=\"filter\" data-table=\"{id}\" hidden=\"\">{} <input type=\"search\"/></label>\n",
+                    escape(filter)
+                ),
+            );
         }
-        put(&mut self.body, format_args!("<div class=\"scroll\" tabindex=\"0\">\n<table class=\"sortable\" id=\"{id}\">\n<thead>\n<tr>"));
+        put(
+            &mut self.body,
+            format_args!(
+                "<div class=\"scroll\" tabindex=\"0\">\n<table class=\"sortable\" id=\"{id}\">\n<thead>\n<tr>"
+            ),
+        );
         let classes = rows.first().map_or(&[][..], |(_, cells)| cells);
         for (place, column) in columns.iter().enumerate() {
             let is_text = classes.get(place).is_some_and(|cell| !cell.class.is_empty());
             let class = if is_text { "text" } else { "" };
-            put(&mut self.body, format_args!("<th scope=\"col\" class=\"{class}\">{}</th>", escape(column)));
+            put(
+                &mut self.body,
+                format_args!("<th scope=\"col\" class=\"{class}\">{}</th>", escape(column)),
+            );
         }
         self.body += "</tr>\n</thead>\n<tbody>\n";
         for (is_marked, cells) in rows {
             self.body += if *is_marked { "<tr class=\"front\">" } else { "<tr>" };
             for Cell { html, class, value } in cells {
-                let value = value.map_or_else(String::new, |value| format!(" data-value=\"{value}\""));
+                let value =
+                    value.map_or_else(String::new, |value| format!(" data-value=\"{value}\""));
                 put(&mut self.body, format_args!("<td class=\"{class}\"{value}>{html}</td>"));
             }
             self.body += "</tr>\n";
@@ -160,10 +185,14 @@ impl Page {
         for Shown { name, caption, film, exposure } in pictures {
             let uri = png_uri(&encode_picture(film, *exposure, Picture::Png8));
             let (name, caption) = (escape(name), escape(caption));
-            put(&mut self.body, format_args!(
-                "<figure data-name=\"{name}\"><img src=\"{uri}\" alt=\"{name}\" width=\"{}\" height=\"{}\"/><figcaption>{caption}</figcaption></figure>\n",
-                film.width(), film.height()
-            ));
+            put(
+                &mut self.body,
+                format_args!(
+                    "<figure data-name=\"{name}\"><img src=\"{uri}\" alt=\"{name}\" width=\"{}\" height=\"{}\"/><figcaption>{caption}</figcaption></figure>\n",
+                    film.width(),
+                    film.height()
+                ),
+            );
         }
         self.body += "</div>\n";
     }
@@ -172,6 +201,9 @@ impl Page {
     #[must_use]
     pub fn finish(self) -> String {
         let script = include_str!("page.js");
-        format!("{}</main>\n<footer></footer>\n<script>\n{script}</script>\n</body>\n</html>\n", self.body)
+        format!(
+            "{}</main>\n<footer></footer>\n<script>\n{script}</script>\n</body>\n</html>\n",
+            self.body
+        )
     }
 }

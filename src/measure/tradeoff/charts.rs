@@ -1,7 +1,7 @@
 //! The charts of a report.
 
 use super::{EnginePoint, Report, SamplesPoint, TessellationPoint, Timing};
-use crate::measure::report::{Chart, Dimension, Hue, Look, LogAxis, Mark, Shape, document};
+use crate::measure::report::{Chart, Dimension, Hue, LogAxis, Look, Mark, Shape, document};
 use crate::occlusion::{Backend, Test};
 use crate::shadow::Method;
 

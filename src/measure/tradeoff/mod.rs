@@ -18,7 +18,6 @@ mod table;
 mod timing;
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering::Relaxed;
 
 use serde::Serialize;
 
@@ -30,6 +29,7 @@ use crate::scene::{Scene, SceneError, builtin};
 use crate::shadow::MethodError;
 use masks::Masks;
 
+pub use charts::plot;
 pub use csv::csv;
 pub use disagreements::Disagreement;
 pub use engines::EnginePoint;
@@ -37,7 +37,6 @@ pub use page::page;
 pub use pareto::front;
 pub use picture_error::PictureError;
 pub use pictures::{PictureTrade, SamplesPoint, TessellationPoint};
-pub use charts::plot;
 pub use table::table;
 pub use timing::Timing;
 
@@ -177,6 +176,19 @@ struct Pictures {
     masks: Masks,
     tessellation: Option<(String, Arc<Film>, f32)>,
     samples: (String, Arc<Film>, f32),
+}
+
+impl Report {
+    /// What must not be: a contender that breaks its promise.
+    #[must_use]
+    pub fn failure(&self) -> Option<String> {
+        let point = self.engines.iter().find(|point| point.breaks_its_promise())?;
+        Some(if point.steady {
+            format!("{} gave answers that are not the exact ones", point.name)
+        } else {
+            format!("{} gave different answers to the same rays", point.name)
+        })
+    }
 }
 
 /// Whether the scene is built in and has surfaces that triangles only come near to.

@@ -64,9 +64,13 @@ fn findings(report: &Report) -> Vec<String> {
         report.engines.len(),
         report.differing_queries
     ));
-    findings.extend(report.engines.iter().filter(|point| point.breaks_its_promise()).map(|point| {
-        format!("A defect: {} breaks its promise.", point.name)
-    }));
+    findings.extend(
+        report
+            .engines
+            .iter()
+            .filter(|point| point.breaks_its_promise())
+            .map(|point| format!("A defect: {} breaks its promise.", point.name)),
+    );
     findings
 }
 
@@ -77,8 +81,17 @@ fn engines(page: &mut Page, report: &Report) {
         page.chart(&chart);
     }
     let columns = [
-        "engine", "Mrays/s", "spread", "with building", "wrong/million", "95 % interval",
-        "false blocked", "false clear", "ties", "build s", "memory",
+        "engine",
+        "Mrays/s",
+        "spread",
+        "with building",
+        "wrong/million",
+        "95 % interval",
+        "false blocked",
+        "false clear",
+        "ties",
+        "build s",
+        "memory",
     ];
     let mut order: Vec<usize> = (0..report.engines.len()).collect();
     let speed = |place: usize| report.engines[place].mrays_per_second.median;
@@ -134,7 +147,12 @@ fn shadows(page: &mut Page, report: &Report) {
         .collect();
     let caption = format!("{}, by the grid with the exact test.", about.scene);
     let mut shown = vec![
-        Shown { name: "picture", caption: &caption, film: &pictures.film, exposure: pictures.exposure },
+        Shown {
+            name: "picture",
+            caption: &caption,
+            film: &pictures.film,
+            exposure: pictures.exposure,
+        },
         Shown {
             name: "exact shadows",
             caption: "White where every light that is asked about reaches the pixel, black where none does; reflections included.",
@@ -162,7 +180,8 @@ fn disagreements(page: &mut Page, report: &Report) {
         report.disagreements.len(),
         report.differing_queries
     ));
-    let columns = ["pixel", "light", "truth", "differing", "who", "origin", "direction", "end", "bits"];
+    let columns =
+        ["pixel", "light", "truth", "differing", "who", "origin", "direction", "end", "bits"];
     let rows: Vec<_> =
         report.disagreements.iter().map(|disagreement| (false, disputed(disagreement))).collect();
     page.table(&columns, &rows, None);
@@ -209,8 +228,14 @@ fn tessellation(page: &mut Page, report: &Report) {
         page.chart(&chart);
     }
     let columns = [
-        "triangles ×", "triangles", "seconds", "spread", "picture error, levels", "pixels off, per million",
-        "surface error, diagonals", "greatest",
+        "triangles ×",
+        "triangles",
+        "seconds",
+        "spread",
+        "picture error, levels",
+        "pixels off, per million",
+        "surface error, diagonals",
+        "greatest",
     ];
     let rows: Vec<_> = report
         .tessellations
@@ -223,9 +248,15 @@ fn tessellation(page: &mut Page, report: &Report) {
                 Cell::number(&format!("{:.3}", point.seconds.median), point.seconds.median),
                 spread(point.seconds),
                 Cell::number(&format!("{:.3}", error.levels), error.levels),
-                Cell::number(&format!("{:.0}", error.visible_per_million), error.visible_per_million),
+                Cell::number(
+                    &format!("{:.0}", error.visible_per_million),
+                    error.visible_per_million,
+                ),
                 Cell::number(&format!("{:.1e}", point.deviation), point.deviation),
-                Cell::number(&format!("{:.1e}", point.greatest_deviation), point.greatest_deviation),
+                Cell::number(
+                    &format!("{:.1e}", point.greatest_deviation),
+                    point.greatest_deviation,
+                ),
             ];
             (false, cells)
         })
@@ -238,8 +269,12 @@ fn tessellation(page: &mut Page, report: &Report) {
         .iter()
         .map(|point| format!("{} triangles, {:.3} s.", point.triangles, point.seconds.median))
         .collect();
-    let mut shown =
-        vec![Shown { name: "reference", caption: reference_name, film: reference, exposure: *exposure }];
+    let mut shown = vec![Shown {
+        name: "reference",
+        caption: reference_name,
+        film: reference,
+        exposure: *exposure,
+    }];
     for ((name, caption), point) in names.iter().zip(&captions).zip(&report.tessellations) {
         shown.push(Shown { name, caption, film: &point.film, exposure: *exposure });
     }
@@ -253,7 +288,13 @@ fn samples(page: &mut Page, report: &Report) {
         "Rendering by the grid with the exact test; the picture is held against that of {reference_name}."
     ));
     page.chart(&samples_chart(report));
-    let columns = ["samples a pixel", "seconds", "spread", "picture error, levels", "pixels off, per million"];
+    let columns = [
+        "samples a pixel",
+        "seconds",
+        "spread",
+        "picture error, levels",
+        "pixels off, per million",
+    ];
     let rows: Vec<_> = report
         .samples
         .iter()
@@ -265,7 +306,10 @@ fn samples(page: &mut Page, report: &Report) {
                 Cell::number(&format!("{:.3}", point.seconds.median), point.seconds.median),
                 spread(point.seconds),
                 Cell::number(&format!("{:.3}", error.levels), error.levels),
-                Cell::number(&format!("{:.0}", error.visible_per_million), error.visible_per_million),
+                Cell::number(
+                    &format!("{:.0}", error.visible_per_million),
+                    error.visible_per_million,
+                ),
             ];
             (false, cells)
         })
@@ -276,10 +320,16 @@ fn samples(page: &mut Page, report: &Report) {
     let captions: Vec<_> = report
         .samples
         .iter()
-        .map(|point| format!("Samples a pixel: {}, {:.3} s.", point.samples_per_pixel, point.seconds.median))
+        .map(|point| {
+            format!("Samples a pixel: {}, {:.3} s.", point.samples_per_pixel, point.seconds.median)
+        })
         .collect();
-    let mut shown =
-        vec![Shown { name: "reference", caption: reference_name, film: reference, exposure: *exposure }];
+    let mut shown = vec![Shown {
+        name: "reference",
+        caption: reference_name,
+        film: reference,
+        exposure: *exposure,
+    }];
     for ((name, caption), point) in names.iter().zip(&captions).zip(&report.samples) {
         shown.push(Shown { name, caption, film: &point.film, exposure: *exposure });
     }

@@ -47,7 +47,10 @@ fn write(text: &mut String, report: &Report) -> fmt::Result {
     }
     writeln!(text, "  * no other is both faster and less often wrong")?;
     if !report.tessellations.is_empty() {
-        writeln!(text, "\n  tessellation  triangles    seconds  spread  picture error  surface error")?;
+        writeln!(
+            text,
+            "\n  tessellation  triangles    seconds  spread  picture error  surface error"
+        )?;
         report.tessellations.iter().try_for_each(|point| tessellation(text, point))?;
     }
     writeln!(text, "\n  samples    seconds  spread  picture error")?;

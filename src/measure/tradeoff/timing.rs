@@ -32,8 +32,9 @@ impl Timing {
 /// always first, or always after the same neighbour's warm-up.
 pub fn turns(count: usize, repetitions: usize) -> impl Iterator<Item = usize> {
     let stride = count.div_ceil(repetitions.max(1)).max(1);
-    (0..repetitions)
-        .flat_map(move |repetition| (0..count).map(move |turn| (turn + repetition * stride) % count))
+    (0..repetitions).flat_map(move |repetition| {
+        (0..count).map(move |turn| (turn + repetition * stride) % count)
+    })
 }
 
 #[cfg(test)]
