@@ -84,6 +84,19 @@ pub fn tick_label(value: f64) -> String {
     if digit == 1.0 { format!("10{power}") } else { format!("{digit}·10{power}") }
 }
 
+/// Bytes in the unit that fits: 950 B, 1.5 kB, 20 MB.
+#[must_use]
+pub fn bytes(bytes: f64) -> String {
+    let units = ["B", "kB", "MB", "GB"];
+    let (mut value, mut unit) = (bytes, 0);
+    // 999.5 would be written as 1000.
+    while value >= 999.5 && unit + 1 < units.len() {
+        (value, unit) = (value / 1000.0, unit + 1);
+    }
+    let decimals = usize::from(value < 9.95 && value.fract() != 0.0);
+    format!("{value:.decimals$} {}", units[unit])
+}
+
 fn superscript(character: char) -> char {
     match character {
         '0' => '⁰',
@@ -128,6 +141,12 @@ mod tests {
             let ticks = LogAxis::over([1.0, high]).ticks();
             assert!((2..=10).contains(&ticks.len()), "{high}: {ticks:?}");
         }
+    }
+
+    #[test]
+    fn bytes_are_told_in_the_unit_that_fits() {
+        let told = [0.0, 999.0, 1000.0, 1536.0, 20e6, 999_600.0, 5e13].map(bytes);
+        assert_eq!(told, ["0 B", "999 B", "1 kB", "1.5 kB", "20 MB", "1.0 MB", "50000 GB"]);
     }
 
     #[test]

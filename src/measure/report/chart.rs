@@ -3,8 +3,8 @@
 //! Marks at zero lie in a lane of their own at the foot of the chart, beside or above one another where they
 //! would cover each other: there is only one height that means zero, so height in the lane means nothing.
 
-use super::axis::{LogAxis, tick_label};
-use super::labels::{Boxed, Labels, text_width};
+use super::axis::LogAxis;
+use super::labels::{Boxed, Labels, RING, text_width};
 use super::look::{Look, RADIUS, style};
 use super::markup::{escape, put};
 
@@ -15,6 +15,8 @@ pub struct Dimension {
     pub title: String,
     /// The scale.
     pub axis: LogAxis,
+    /// How a value is written beside its tick.
+    pub label: fn(f64) -> String,
 }
 
 /// A point of a chart.
@@ -198,7 +200,7 @@ impl Plot<'_> {
             );
         }
         for tick in self.chart.x.axis.ticks() {
-            let (x, label) = (self.x(tick), tick_label(tick));
+            let (x, label) = (self.x(tick), (self.chart.x.label)(tick));
             put(svg, format_args!("<path class=\"rule\" d=\"M{x:.1} {TOP}V{foot}\"/>\n"));
             put(
                 svg,
@@ -209,7 +211,7 @@ impl Plot<'_> {
             );
         }
         for tick in self.chart.y.axis.ticks() {
-            let (y, label) = (self.y(tick), tick_label(tick));
+            let (y, label) = (self.y(tick), (self.chart.y.label)(tick));
             put(svg, format_args!("<path class=\"rule\" d=\"M{LEFT} {y:.1}H{right:.1}\"/>\n"));
             put(
                 svg,
@@ -276,7 +278,7 @@ impl Plot<'_> {
                 svg,
                 format_args!(
                     "<circle class=\"ring\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{}\"/>\n",
-                    RADIUS + 4.0
+                    RADIUS + RING
                 ),
             );
         }
@@ -289,15 +291,24 @@ impl Plot<'_> {
         labelled.sort_by(|&a, &b| places[b].0.total_cmp(&places[a].0));
         for mark in labelled {
             let text = &self.chart.marks[mark].label;
-            if let Some((x, y)) = labels.put(places[mark], text_width(text, LABEL_SIZE)) {
+            let width = text_width(text, LABEL_SIZE);
+            let Some((x, y)) = labels.put(places[mark], width) else { continue };
+            if let Some([from_x, from_y, to_x, to_y]) = Labels::leader(places[mark], (x, y), width)
+            {
                 put(
                     svg,
                     format_args!(
-                        "<text class=\"label\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>\n",
-                        escape(text)
+                        "<path class=\"spread\" d=\"M{from_x:.1} {from_y:.1}L{to_x:.1} {to_y:.1}\"/>\n"
                     ),
                 );
             }
+            put(
+                svg,
+                format_args!(
+                    "<text class=\"label\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>\n",
+                    escape(text)
+                ),
+            );
         }
     }
 
@@ -305,7 +316,8 @@ impl Plot<'_> {
     fn places(&self) -> Vec<(f64, f64)> {
         let step = 2.0 * RADIUS + GAP;
         let lane = HEIGHT * self.chart.y.axis.lane();
-        let rows = (((lane - LINE) / step) as usize).max(1);
+        // One line of text stands at the foot.
+        let rows = (((lane - 2.0 * LINE) / step) as usize).max(1);
         let mut taken_to = vec![f64::NEG_INFINITY; rows];
         let mut places: Vec<_> =
             self.chart.marks.iter().map(|mark| (self.x(mark.x), self.y(mark.y))).collect();
@@ -320,7 +332,9 @@ impl Plot<'_> {
                 (0..rows).min_by(|&a, &b| taken_to[a].total_cmp(&taken_to[b])).unwrap_or(0)
             });
             taken_to[row] = x;
-            places[mark].1 = TOP + HEIGHT - lane + step * (row as f64 + 0.5) + GAP;
+            // From the middle outwards: below, above, below.
+            let from_middle = (row as f64 / 2.0).ceil() * if row % 2 == 1 { 1.0 } else { -1.0 };
+            places[mark].1 += step * from_middle;
         }
         places
     }

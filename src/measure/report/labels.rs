@@ -38,8 +38,12 @@ pub struct Labels {
     placed: Vec<Boxed>,
 }
 
+/// From a mark to its ring.
+pub const RING: f64 = 4.0;
 /// From a mark to its label.
-const DISTANCE: f64 = RADIUS + 7.0;
+const DISTANCE: f64 = RADIUS + RING + 3.0;
+/// Lines away from its mark that a label may be.
+const LINES: u32 = 8;
 /// Height of a label's letters above and below its baseline.
 const ASCENT: f64 = 11.0;
 const DESCENT: f64 = 4.0;
@@ -63,22 +67,21 @@ impl Labels {
         Self { area, marks: marks.iter().map(around).collect(), placed: Vec::new() }
     }
 
-    /// Where a label of this width beside a mark begins; `None` if it would cover another label or leave
-    /// the area wherever it was put. It covers marks only where there is no other place.
+    /// Where a label of this width for a mark begins; `None` if it would cover another label wherever it was
+    /// put, or is wider than the area. It covers marks only where there is no other place, and lies farther
+    /// away where there is none beside the mark.
     pub fn put(&mut self, (x, y): (f64, f64), width: f64) -> Option<(f64, f64)> {
         let level = y + 0.5 * (ASCENT - DESCENT);
-        let (above, below) = (y - DISTANCE - DESCENT, y + DISTANCE + ASCENT);
-        let (right, left, middle) = (x + DISTANCE, x - DISTANCE - width, x - 0.5 * width);
-        let candidates = [
-            (right, level),
-            (left, level),
-            (middle, above),
-            (middle, below),
-            (x, above),
-            (x - width, above),
-            (x, below),
-            (x - width, below),
-        ];
+        let mut candidates = vec![(x + DISTANCE, level), (x - DISTANCE - width, level)];
+        for line in 0..LINES {
+            let away = DISTANCE + f64::from(line) * (ASCENT + DESCENT);
+            for baseline in [y - away - DESCENT, y + away + ASCENT] {
+                for left in [x - 0.5 * width, x, x - width] {
+                    let left = left.min(self.area.right - width).max(self.area.left);
+                    candidates.push((left, baseline));
+                }
+            }
+        }
         let around = |&(x, y): &(f64, f64)| Boxed {
             left: x,
             right: x + width,
@@ -98,6 +101,22 @@ impl Labels {
         self.placed.push(around(found));
         Some(*found)
     }
+
+    /// The line from a mark to its label at a place that [`put`](Self::put) gave, where they are apart.
+    #[must_use]
+    pub fn leader(
+        (x, y): (f64, f64),
+        (left, baseline): (f64, f64),
+        width: f64,
+    ) -> Option<[f64; 4]> {
+        let (top, bottom) = (baseline - ASCENT, baseline + DESCENT);
+        let end = if top > y { top } else { bottom };
+        let gap = (end - y).abs();
+        let is_level = (top..=bottom).contains(&y);
+        let start = y + (RADIUS + RING) * (end - y).signum();
+        let is_apart = !is_level && gap > DISTANCE + ASCENT;
+        is_apart.then(|| [x, start, x.clamp(left, left + width), end])
+    }
 }
 
 #[cfg(test)]
@@ -113,7 +132,7 @@ mod tests {
             .collect();
         let mut labels = Labels::new(AREA, &marks);
         let placed = marks.iter().filter(|mark| labels.put(**mark, 80.0).is_some()).count();
-        assert!((2..30).contains(&placed), "{placed}");
+        assert!((2..90).contains(&placed), "{placed}");
         for (index, a) in labels.placed.iter().enumerate() {
             assert!(a.is_within(&AREA));
             assert!(!labels.placed[..index].iter().any(|b| a.overlaps(b)), "{:?}", labels.placed);
@@ -126,6 +145,15 @@ mod tests {
         let mut labels = Labels::new(AREA, &marks);
         let (x, _) = labels.put(marks[0], 60.0).unwrap();
         assert_eq!(x, 100.0 - DISTANCE - 60.0, "to the left, for its neighbour is on the right");
+    }
+
+    #[test]
+    fn a_label_far_from_its_mark_has_a_leader() {
+        let level = Labels::leader((100.0, 100.0), (113.0, 103.5), 60.0);
+        let above = Labels::leader((100.0, 100.0), (70.0, 83.0), 60.0);
+        assert!(level.is_none() && above.is_none(), "{level:?} {above:?}");
+        let far = Labels::leader((100.0, 100.0), (120.0, 40.0), 60.0).unwrap();
+        assert_eq!(far, [100.0, 90.0, 120.0, 44.0]);
     }
 
     #[test]

@@ -8,7 +8,7 @@ mod look;
 mod markup;
 mod page;
 
-pub use axis::LogAxis;
+pub use axis::{LogAxis, bytes, tick_label};
 pub use chart::{Chart, Dimension, Mark, document};
 pub use look::{Hue, Look, Shape, style};
 pub use markup::{escape, png_uri};

@@ -1,7 +1,9 @@
 //! The charts of a report.
 
 use super::{EnginePoint, Report, SamplesPoint, TessellationPoint, Timing};
-use crate::measure::report::{Chart, Dimension, Hue, LogAxis, Look, Mark, Shape, document};
+use crate::measure::report::{
+    Chart, Dimension, Hue, LogAxis, Look, Mark, Shape, bytes, document, tick_label,
+};
 use crate::occlusion::{Backend, Test};
 use crate::shadow::Method;
 
@@ -64,8 +66,8 @@ fn legend(points: &[EnginePoint]) -> Vec<(Look, String)> {
     let tests = tests.filter(|name| points.iter().any(|point| point.test == *name));
     legend.extend(tests.map(|name| (ink(shape_of(name), true), name.to_owned())));
     if points.iter().any(|point| point.method != Method::Trace.name()) {
-        legend.push((ink(Shape::Circle, true), "engine alone (trace)".to_owned()));
-        legend.push((ink(Shape::Circle, false), "behind a shadow method".to_owned()));
+        legend.push((ink(Shape::Bar, true), "filled: engine alone".to_owned()));
+        legend.push((ink(Shape::Bar, false), "hollow: behind a shadow method".to_owned()));
     }
     legend
 }
@@ -115,13 +117,19 @@ fn chart(
         label: if front.contains(&place) { point.name.clone() } else { String::new() },
         tooltip: tooltip(point),
     });
+    // Where nobody is wrong, the axis shows how wrong they might be all the same.
+    let is_faultless = is_wrongness && points.iter().all(|point| cost(point) <= 0.0);
+    let costs = points
+        .iter()
+        .map(|point| if is_faultless { point.wrong_per_million.high } else { cost(point) });
     let speeds = points.iter().flat_map(|point| [speed(point).least, speed(point).greatest]);
     Chart {
         title: title.to_owned(),
-        x: Dimension { title: SPEED.to_owned(), axis: LogAxis::over(speeds) },
+        x: Dimension { title: SPEED.to_owned(), axis: LogAxis::over(speeds), label: tick_label },
         y: Dimension {
             title: cost_title.to_owned(),
-            axis: LogAxis::over(points.iter().map(cost)).with_lane(lane),
+            axis: LogAxis::over(costs).with_lane(lane),
+            label: if is_wrongness { tick_label } else { bytes },
         },
         zeros: String::new(),
         marks: marks.collect(),
@@ -140,18 +148,8 @@ fn tooltip(point: &EnginePoint) -> String {
         point.wrong_per_million.share,
         point.wrong_per_million.low,
         point.wrong_per_million.high,
-        bytes(point.memory_bytes),
+        bytes(point.memory_bytes as f64),
     )
-}
-
-/// Bytes in the unit that fits.
-pub(super) fn bytes(bytes: usize) -> String {
-    let units = ["bytes", "KiB", "MiB", "GiB"];
-    let (mut value, mut unit) = (bytes as f64, 0);
-    while value >= 1024.0 && unit + 1 < units.len() {
-        (value, unit) = (value / 1024.0, unit + 1);
-    }
-    if unit == 0 { format!("{bytes} {}", units[0]) } else { format!("{value:.1} {}", units[unit]) }
 }
 
 /// One line of points, each labelled, of a trade that shows in the picture.
@@ -183,10 +181,15 @@ impl Line<'_> {
         front.reverse();
         Chart {
             title: self.title.to_owned(),
-            x: Dimension { title: self.x.to_owned(), axis: LogAxis::over(seconds) },
+            x: Dimension {
+                title: self.x.to_owned(),
+                axis: LogAxis::over(seconds),
+                label: tick_label,
+            },
             y: Dimension {
                 title: self.y.to_owned(),
                 axis: LogAxis::over(marks.iter().map(|mark| mark.y)).with_lane(lane),
+                label: tick_label,
             },
             zeros: "no difference".to_owned(),
             marks,
@@ -239,12 +242,6 @@ pub(super) fn samples_chart(report: &Report) -> Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn bytes_are_told_in_the_unit_that_fits() {
-        let told = [0, 1023, 1024, 1536, 3 << 20, 5 << 40].map(bytes);
-        assert_eq!(told, ["0 bytes", "1023 bytes", "1.0 KiB", "1.5 KiB", "3.0 MiB", "5120.0 GiB"]);
-    }
 
     #[test]
     fn no_two_backends_share_a_hue_and_no_two_tests_a_shape() {

@@ -1,15 +1,15 @@
 //! The report as an HTML page.
 
-use super::charts::{bytes, engine_charts, look_of, samples_chart, tessellation_charts};
+use super::charts::{engine_charts, look_of, samples_chart, tessellation_charts};
 use super::{Disagreement, EnginePoint, Report, Timing};
-use crate::measure::report::{Cell, Page, Shown};
+use crate::measure::report::{Cell, Page, Shown, bytes};
 
 /// The report as a page that is one file; `command` is what made it.
 #[must_use]
 pub fn page(report: &Report, command: &str) -> String {
     let about = &report.circumstances;
     let lead = format!(
-        "{} triangles, {} lights; {}×{} pixels, {} samples each: {} shadow rays, {:.1} % of them blocked.",
+        "{} triangles, {} lights; {}×{} pixels, samples each: {}; {} shadow rays, {:.1} % of them blocked.",
         about.triangles,
         about.lights,
         about.width,
@@ -118,14 +118,12 @@ fn row(point: &EnginePoint) -> Vec<Cell> {
         count(point.false_clear),
         count(point.ties),
         Cell::number(&format!("{:.3}", point.build_seconds.median), point.build_seconds.median),
-        Cell::number(&bytes(point.memory_bytes), point.memory_bytes as f64),
+        Cell::number(&bytes(point.memory_bytes as f64), point.memory_bytes as f64),
     ]
 }
 
-/// Half the distance from the least to the greatest, as a share of the median.
 fn spread(timing: Timing) -> Cell {
-    let spread = 50.0 * (timing.greatest - timing.least) / timing.median;
-    Cell::number(&format!("±{spread:.0} %"), spread)
+    Cell::number(&timing.spread_text(), timing.spread())
 }
 
 fn shadows(page: &mut Page, report: &Report) {

@@ -2,8 +2,8 @@
 
 use std::fmt::{self, Write};
 
-use super::charts::bytes;
-use super::{EnginePoint, Report, SamplesPoint, TessellationPoint, Timing};
+use super::{EnginePoint, Report, SamplesPoint, TessellationPoint};
+use crate::measure::report::bytes;
 
 /// The tables of all trades: engines by speed, the front marked with a star.
 #[must_use]
@@ -63,7 +63,7 @@ fn write(text: &mut String, report: &Report) -> fmt::Result {
 
 fn row(point: &EnginePoint) -> String {
     let wrong = &point.wrong_per_million;
-    let spread = spread(point.mrays_per_second);
+    let spread = point.mrays_per_second.spread_text();
     format!(
         "{:7.3} {spread:>7}    {:7.3}   {:17.2}   {:>15}  {:5}  {:>10}",
         point.mrays_per_second.median,
@@ -71,13 +71,8 @@ fn row(point: &EnginePoint) -> String {
         wrong.share,
         format!("{:.2} to {:.2}", wrong.low, wrong.high),
         point.ties,
-        bytes(point.memory_bytes),
+        bytes(point.memory_bytes as f64),
     )
-}
-
-/// Half the distance from the least to the greatest, as a share of the median.
-fn spread(timing: Timing) -> String {
-    format!("±{:.0} %", 50.0 * (timing.greatest - timing.least) / timing.median)
 }
 
 fn tessellation(text: &mut String, point: &TessellationPoint) -> fmt::Result {
@@ -87,7 +82,7 @@ fn tessellation(text: &mut String, point: &TessellationPoint) -> fmt::Result {
         point.factor,
         point.triangles,
         point.seconds.median,
-        spread(point.seconds),
+        point.seconds.spread_text(),
         point.picture_error.levels,
         point.deviation
     )
@@ -99,7 +94,7 @@ fn samples(text: &mut String, point: &SamplesPoint) -> fmt::Result {
         "  {:7} {:10.4} {:>7} {:14.3}",
         point.samples_per_pixel,
         point.seconds.median,
-        spread(point.seconds),
+        point.seconds.spread_text(),
         point.picture_error.levels
     )
 }

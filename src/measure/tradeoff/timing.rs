@@ -26,6 +26,22 @@ impl Timing {
         let (low, high) = (sorted[(sorted.len() - 1) / 2], sorted[sorted.len() / 2]);
         Self { median: 0.5 * (low + high), least, greatest }
     }
+
+    /// Half the distance from the least to the greatest, as a share of the median.
+    #[must_use]
+    pub fn spread(&self) -> f64 {
+        0.5 * (self.greatest - self.least) / self.median
+    }
+
+    /// The same in per cent; a dash where there is but one measurement.
+    #[must_use]
+    pub fn spread_text(&self) -> String {
+        if self.greatest > self.least {
+            format!("±{:.0} %", 100.0 * self.spread())
+        } else {
+            "–".to_owned()
+        }
+    }
 }
 
 /// Whose turn it is: all of `count` once in each repetition, each time beginning elsewhere, so that nobody is
@@ -48,6 +64,7 @@ mod tests {
         assert_eq!([odd.median, odd.least, odd.greatest], [3.0, 1.0, 9.0]);
         assert_eq!(timing(&[4.0, 1.0, 2.0, 8.0]).median, 3.0);
         assert_eq!(timing(&[5.0]).median, 5.0);
+        assert_eq!([odd, timing(&[5.0])].map(|t| t.spread_text()), ["±133 %", "–"]);
     }
 
     #[test]
