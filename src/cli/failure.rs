@@ -89,6 +89,7 @@ input!(
     crate::shadow::MethodError,
     crate::render::SettingsError,
     crate::render::OutputError,
+    crate::measure::compare::CompareError,
     crate::measure::paper::PaperError,
     crate::measure::tradeoff::TradeoffError,
 );

@@ -98,7 +98,7 @@ impl EngineOptions {
     }
 }
 
-/// A pool of so many threads; of as many as there are processors if not given.
+/// A pool of so many threads; of all processors if no number is given.
 pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
     let threads = match threads {
         Some(0) => return Err(Failure::Input("--threads 0: give at least 1".to_owned())),
@@ -221,7 +221,7 @@ pub(super) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(
     write_whole(path, text.as_bytes()).map_err(|reason| Failure::unwritable(path, &reason))
 }
 
-/// To standard output.
+/// Writes to standard output.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     use std::io::Write;
     std::io::stdout().write_all(text.as_bytes()).map_err(|_| Failure::NoReader)

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{check_outputs, parse_size, pool, print, write_json};
+use super::options::{check_outputs, parse_size, print, write_json};
 use super::progress::with_bar;
 use crate::measure::paper::{
     Conditions, NODE_BYTES, Published, SceneReport, Storage, TABLE, reproduce, storage,
@@ -107,7 +107,8 @@ impl Paper {
         let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[])?;
         // One thread, which is the one whose work is counted.
-        let pool = pool(Some(1))?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let pool = pool.map_err(|e| Failure::Input(format!("cannot start a thread: {e}")))?;
         let mut scenes = Vec::new();
         for published in self.scenes() {
             let progress = Progress::default();

@@ -14,14 +14,3 @@ pub const YELLOW: Srgb = [240, 228, 66];
 pub const BLUE: Srgb = [0, 114, 178];
 pub const VERMILLION: Srgb = [213, 94, 0];
 pub const REDDISH_PURPLE: Srgb = [204, 121, 167];
-
-/// As linear radiance, for a film.
-#[must_use]
-pub fn linear(colour: Srgb) -> glam::Vec3 {
-    glam::Vec3::from(colour.map(|value| decode(f32::from(value) / 255.0)))
-}
-
-/// From sRGB to linear.
-fn decode(value: f32) -> f32 {
-    if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-}

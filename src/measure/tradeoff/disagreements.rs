@@ -1,11 +1,10 @@
 //! The queries that were answered wrongly by the most contenders, each with what is needed to ask it again.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
 use super::EnginePoint;
-use super::engines::Verdicts;
 use crate::exact::Verdict;
 use crate::geometry::Ray;
 use crate::measure::recording::Recording;
@@ -36,11 +35,16 @@ pub struct Disagreement {
     pub by: Vec<String>,
 }
 
+/// How many queries any contender answered otherwise than exactly.
+pub(super) fn count(points: &[EnginePoint]) -> usize {
+    points.iter().flat_map(|point| &point.differing).collect::<BTreeSet<_>>().len()
+}
+
 /// The worst: wrong answers before ties, and those of many contenders before those of few.
 pub(super) fn worst(
     recording: &Recording,
     points: &[EnginePoint],
-    verdicts: &Verdicts,
+    truth: &[Verdict],
 ) -> Vec<Disagreement> {
     let mut by: BTreeMap<u32, Vec<&EnginePoint>> = BTreeMap::new();
     for point in points {
@@ -50,7 +54,7 @@ pub(super) fn worst(
     }
     let mut numbers: Vec<u32> = by.keys().copied().collect();
     numbers.sort_by_key(|number| {
-        (verdicts[number] == Verdict::Tie, std::cmp::Reverse(by[number].len()), *number)
+        (truth[*number as usize] == Verdict::Tie, std::cmp::Reverse(by[number].len()), *number)
     });
     numbers.truncate(MOST);
     let describe = |number: u32| {
@@ -64,7 +68,7 @@ pub(super) fn worst(
             direction: direction.to_array(),
             end: end.is_finite().then_some(end),
             bits: bits(&recorded.query.ray),
-            verdict: match verdicts[&number] {
+            verdict: match truth[number as usize] {
                 Verdict::Blocked => "blocked",
                 Verdict::Clear => "clear",
                 Verdict::Tie => "tie",

@@ -4,7 +4,6 @@
 //! dropped. So what it builds lazily counts, only one is in memory at a time, and none profits from
 //! what another left behind. All have their turn within every repetition.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
@@ -13,10 +12,10 @@ use serde::Serialize;
 
 use super::timing::{Timing, turns};
 use super::{Conditions, TradeoffError};
-use crate::exact::{self, Verdict};
-use crate::geometry::{Ray, Triangles};
+use crate::exact::Verdict;
 use crate::measure::contender::Contender;
 use crate::measure::recording::Recording;
+use crate::measure::truth::Truths;
 use crate::measure::wilson::PerMillion;
 use crate::occlusion::Test;
 use crate::render::Progress;
@@ -82,13 +81,10 @@ struct Turn {
     bytes: usize,
 }
 
-/// By their number, the exact verdicts on queries that anyone answered otherwise than the exact test.
-pub(super) type Verdicts = BTreeMap<u32, Verdict>;
-
-/// All contenders, and the truth about what they do not agree on.
+/// All contenders, and the truth about what they were asked, by query.
 pub(super) struct Measured {
     pub points: Vec<EnginePoint>,
-    pub verdicts: Verdicts,
+    pub truth: Vec<Verdict>,
 }
 
 /// Gives every contender its turns, on the threads of the current pool.
@@ -101,6 +97,11 @@ pub(super) fn measure(
     conditions: &Conditions,
     progress: &Progress,
 ) -> Result<Measured, TradeoffError> {
+    let truths = Truths::new(scene.triangles.clone());
+    let queries = recording.queries().par_iter();
+    let truth: Vec<Verdict> =
+        queries.map(|recorded| truths.certified(&recorded.query.ray).verdict).collect();
+    drop(truths);
     let contenders = &conditions.contenders;
     let mut taken: Vec<Vec<Turn>> = contenders.iter().map(|_| Vec::new()).collect();
     let mut said: Vec<Option<Vec<u32>>> = vec![None; contenders.len()];
@@ -109,7 +110,7 @@ pub(super) fn measure(
         let (turn, answers) = take_turn(&contenders[which], scene, recording)?;
         taken[which].push(turn);
         for answers in answers {
-            let differing = differing(recording, &answers);
+            let differing = differing(&truth, &answers);
             let first = said[which].get_or_insert_with(|| differing.clone());
             steady[which] &= *first == differing;
         }
@@ -117,15 +118,14 @@ pub(super) fn measure(
         progress.pixels.fetch_add(1, Relaxed);
     }
     let said: Vec<Vec<u32>> = said.into_iter().map(Option::unwrap_or_default).collect();
-    let verdicts = verdicts(&said, scene, recording);
     let measured = said.into_iter().zip(steady).zip(&taken).zip(contenders);
     let points = measured
         .map(|(((differing, steady), turns), contender)| {
             let tried = EnginePoint::timed(contender, recording.queries().len(), turns);
-            EnginePoint { steady, ..tried.judged(differing, recording, &verdicts) }
+            EnginePoint { steady, ..tried.judged(differing, &truth) }
         })
         .collect();
-    Ok(Measured { points, verdicts })
+    Ok(Measured { points, truth })
 }
 
 fn take_turn(
@@ -147,24 +147,12 @@ fn take_turn(
     Ok((Turn { build, cold, warm, bytes }, [first, second]))
 }
 
-/// The queries that were not answered as the exact test answered them when they were recorded.
-fn differing(recording: &Recording, answers: &[bool]) -> Vec<u32> {
-    let queries = recording.queries().iter().zip(answers).enumerate();
+/// The queries whose answers are not the truth, ties included.
+fn differing(truth: &[Verdict], answers: &[bool]) -> Vec<u32> {
+    let queries = truth.iter().zip(answers).enumerate();
     queries
-        .filter(|(_, (recorded, blocked))| recorded.blocked != **blocked)
+        .filter(|(_, (verdict, blocked))| (**verdict == Verdict::Blocked) != **blocked)
         .map(|(number, _)| number as u32)
-        .collect()
-}
-
-/// The exact verdicts on all queries that anyone answered otherwise than the exact test.
-fn verdicts(said: &[Vec<u32>], scene: &Scene, recording: &Recording) -> Verdicts {
-    let differing: BTreeSet<u32> = said.iter().flatten().copied().collect();
-    differing
-        .into_par_iter()
-        .map(|number| {
-            let ray = &recording.queries()[number as usize].query.ray;
-            (number, verdict(ray, &scene.triangles))
-        })
         .collect()
 }
 
@@ -192,29 +180,17 @@ impl EnginePoint {
         }
     }
 
-    fn judged(self, differing: Vec<u32>, recording: &Recording, verdicts: &Verdicts) -> Self {
+    fn judged(self, differing: Vec<u32>, truth: &[Verdict]) -> Self {
         let mut judged = Self { differing, ..self };
         for number in &judged.differing {
-            // It said the opposite of what the exact test said.
-            let said_blocked = !recording.queries()[*number as usize].blocked;
-            match (said_blocked, verdicts[number]) {
-                (true, Verdict::Tie) => judged.ties += 1,
-                (true, _) => judged.false_blocked += 1,
-                (false, _) => judged.false_clear += 1,
+            match truth[*number as usize] {
+                Verdict::Blocked => judged.false_clear += 1,
+                Verdict::Clear => judged.false_blocked += 1,
+                Verdict::Tie => judged.ties += 1,
             }
         }
-        let queries = recording.queries().len() as u64;
-        judged.wrong_per_million = PerMillion::new(judged.wrong(), queries);
+        let decided = truth.iter().filter(|verdict| **verdict != Verdict::Tie).count() as u64;
+        judged.wrong_per_million = PerMillion::new(judged.wrong(), decided);
         judged
     }
-}
-
-/// The exact verdict of all opaque triangles together; each is asked.
-fn verdict(ray: &Ray, triangles: &Triangles) -> Verdict {
-    let verdicts = (0..triangles.opaque_count()).map(|id| exact::decide(ray, &triangles.get(id)).0);
-    verdicts.fold(Verdict::Clear, |whole, verdict| match (whole, verdict) {
-        (Verdict::Blocked, _) | (_, Verdict::Blocked) => Verdict::Blocked,
-        (Verdict::Tie, _) | (_, Verdict::Tie) => Verdict::Tie,
-        _ => Verdict::Clear,
-    })
 }

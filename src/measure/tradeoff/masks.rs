@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::EnginePoint;
-use super::engines::Verdicts;
 use crate::exact::Verdict;
 use crate::measure::recording::Recording;
-use crate::render::{Film, palette};
+use crate::render::{Film, UNASKED, from_srgb, palette};
 
 /// Pixels from a wrong one to the frame around it; up to so many wrong ones get a frame.
 const FRAME: u32 = 5;
@@ -29,7 +28,7 @@ pub(super) struct Masks {
 }
 
 impl Masks {
-    pub fn new(recording: &Recording, points: &[EnginePoint], verdicts: &Verdicts) -> Self {
+    pub fn new(recording: &Recording, points: &[EnginePoint], truth: &[Verdict]) -> Self {
         let lit = lit_shares(recording);
         let mut sets: BTreeMap<&[u32], Vec<String>> = BTreeMap::new();
         for point in points.iter().filter(|point| !point.differing.is_empty()) {
@@ -37,7 +36,7 @@ impl Masks {
         }
         let mut differences: Vec<_> = sets
             .into_iter()
-            .map(|(differing, names)| (names, difference(recording, &lit, differing, verdicts)))
+            .map(|(differing, names)| (names, difference(recording, &lit, differing, truth)))
             .collect();
         differences.sort_by_key(|(names, _)| std::cmp::Reverse(names.len()));
         Self { exact: mask(recording, &lit, 0.0, 1.0), differences }
@@ -63,7 +62,7 @@ fn mask(recording: &Recording, lit: &[Option<f32>], darkest: f32, brightest: f32
     let mut film = Film::new(recording.width, recording.height);
     for (place, share) in (0..).zip(lit) {
         let colour = match share {
-            None => Vec3::new(0.02, 0.03, 0.1) * brightest,
+            None => UNASKED * brightest,
             Some(share) => Vec3::splat(darkest + (brightest - darkest) * share),
         };
         film.set((place % recording.width, place / recording.width), colour);
@@ -76,7 +75,7 @@ fn difference(
     recording: &Recording,
     lit: &[Option<f32>],
     differing: &[u32],
-    verdicts: &Verdicts,
+    truth: &[Verdict],
 ) -> Film {
     let mut film = mask(recording, lit, DARKEST, BRIGHTEST);
     let mut paint = |x: u32, y: u32, colour: Vec3| {
@@ -86,7 +85,7 @@ fn difference(
     };
     for number in differing {
         let (x, y) = recording.queries()[*number as usize].pixel;
-        let colour = colour_of(verdicts[number]);
+        let colour = colour_of(truth[*number as usize]);
         paint(x, y, colour);
         if differing.len() > MOST_FRAMES {
             continue;
@@ -106,9 +105,9 @@ fn difference(
 
 /// What each verdict's false answer looks like: light that leaks in, shadow that is none, a tie.
 fn colour_of(truth: Verdict) -> Vec3 {
-    palette::linear(match truth {
-        Verdict::Blocked => palette::YELLOW,
+    from_srgb(match truth {
+        Verdict::Blocked => palette::SKY_BLUE,
         Verdict::Clear => palette::VERMILLION,
-        Verdict::Tie => palette::SKY_BLUE,
+        Verdict::Tie => palette::YELLOW,
     })
 }

@@ -253,7 +253,7 @@ pub fn measure(
     let pictures = Pictures {
         exposure: scene.exposure.unwrap_or_else(|| film.automatic_exposure()),
         film,
-        masks: Masks::new(&recording, &points, &measured.verdicts),
+        masks: Masks::new(&recording, &points, &measured.truth),
         tessellation: tessellation
             .as_ref()
             .map(|trade| (trade.reference_name.clone(), trade.reference.clone(), trade.exposure)),
@@ -266,8 +266,8 @@ pub fn measure(
             with_build: front_of(|point| point.mrays_per_second_with_build.median, wrong),
             memory: front_of(warm, |point| point.memory_bytes as f64),
         },
-        disagreements: disagreements::worst(&recording, &points, &measured.verdicts),
-        differing_queries: measured.verdicts.len(),
+        disagreements: disagreements::worst(&recording, &points, &measured.truth),
+        differing_queries: disagreements::count(&points),
         engines: points,
         tessellations: tessellation.map_or_else(Vec::new, |trade| trade.points),
         samples: samples.points,

@@ -2,6 +2,7 @@
 
 use super::charts::{engine_charts, look_of, samples_chart, tessellation_charts};
 use super::{Disagreement, EnginePoint, Report, Timing};
+use crate::measure::grouped;
 use crate::measure::report::{Cell, Page, Shown, bytes};
 
 /// The report as a page that is one file; `command` is what made it.
@@ -10,12 +11,12 @@ pub fn page(report: &Report, command: &str) -> String {
     let about = &report.circumstances;
     let lead = format!(
         "{} triangles, {} lights; {}×{} pixels, samples each: {}; {} shadow rays, {:.1} % of them blocked.",
-        about.triangles,
+        grouped(about.triangles as u64),
         about.lights,
         about.width,
         about.height,
         about.samples_per_pixel,
-        about.queries,
+        grouped(about.queries as u64),
         100.0 * about.blocked as f64 / about.queries as f64
     );
     let mut page = Page::new(&format!("Speed against accuracy: {}", about.scene), &lead);
@@ -105,7 +106,7 @@ fn engines(page: &mut Page, report: &Report) {
 
 fn row(point: &EnginePoint) -> Vec<Cell> {
     let wrong = &point.wrong_per_million;
-    let count = |count: u64| Cell::number(&count.to_string(), count as f64);
+    let count = |count: u64| Cell::number(&grouped(count), count as f64);
     let decimals = |value: f64| Cell::number(&format!("{value:.2}"), value);
     vec![
         Cell::marked(look_of(point), &point.name),
@@ -129,7 +130,7 @@ fn spread(timing: Timing) -> Cell {
 fn shadows(page: &mut Page, report: &Report) {
     let pictures = &report.pictures;
     page.heading("What the shadow rays see");
-    page.paragraph("Press a name to flip; hold the picture to see the first one again. Differences are drawn over the exact shadows: yellow where light leaks in, orange-red where there is a shadow that is none, blue where a ray only touches a triangle at its end. Lone pixels are framed.");
+    page.paragraph("Press a name to flip; hold the picture to see the first one again. Differences are drawn over the exact shadows: blue where light leaks in, orange-red where there is a shadow that is none, yellow where a ray only touches a triangle at its end. Lone pixels are framed.");
     let about = &report.circumstances;
     let differences: Vec<(String, String)> = pictures
         .masks
@@ -176,7 +177,7 @@ fn disagreements(page: &mut Page, report: &Report) {
     page.paragraph(&format!(
         "{} of {} rays on which some contender differs from exact arithmetic, those that most get wrong first; the JSON file has them too. Bits: origin, direction and end of the ray as f32.",
         report.disagreements.len(),
-        report.differing_queries
+        grouped(report.differing_queries as u64)
     ));
     let columns =
         ["pixel", "light", "truth", "differing", "who", "origin", "direction", "end", "bits"];
@@ -242,7 +243,7 @@ fn tessellation(page: &mut Page, report: &Report) {
             let error = point.picture_error;
             let cells = vec![
                 Cell::number(&point.factor.to_string(), point.factor),
-                Cell::number(&point.triangles.to_string(), point.triangles as f64),
+                Cell::number(&grouped(point.triangles as u64), point.triangles as f64),
                 Cell::number(&format!("{:.3}", point.seconds.median), point.seconds.median),
                 spread(point.seconds),
                 Cell::number(&format!("{:.3}", error.levels), error.levels),
@@ -265,7 +266,9 @@ fn tessellation(page: &mut Page, report: &Report) {
     let captions: Vec<_> = report
         .tessellations
         .iter()
-        .map(|point| format!("{} triangles, {:.3} s.", point.triangles, point.seconds.median))
+        .map(|point| {
+            format!("{} triangles, {:.3} s.", grouped(point.triangles as u64), point.seconds.median)
+        })
         .collect();
     let mut shown = vec![Shown {
         name: "reference",

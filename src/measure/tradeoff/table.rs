@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 
 use super::{EnginePoint, Report, SamplesPoint, TessellationPoint};
+use crate::measure::grouped;
 use crate::measure::report::bytes;
 
 /// The tables of all trades: engines by speed, the front marked with a star.
@@ -19,11 +20,11 @@ fn write(text: &mut String, report: &Report) -> fmt::Result {
         text,
         "{}: {} triangles, {} lights; {}x{}, {} shadow rays, {:.1} % blocked; threads: {}, median of {}",
         about.scene,
-        about.triangles,
+        grouped(about.triangles as u64),
         about.lights,
         about.width,
         about.height,
-        about.queries,
+        grouped(about.queries as u64),
         100.0 * about.blocked as f64 / about.queries as f64,
         about.threads,
         about.repetitions
@@ -80,7 +81,7 @@ fn tessellation(text: &mut String, point: &TessellationPoint) -> fmt::Result {
         text,
         "  {:12} {:10} {:10.4} {:>7} {:14.3} {:14.2e}",
         point.factor,
-        point.triangles,
+        grouped(point.triangles as u64),
         point.seconds.median,
         point.seconds.spread_text(),
         point.picture_error.levels,
