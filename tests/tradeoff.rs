@@ -37,19 +37,15 @@ intensity = [40, 40, 40]
 /// A folder with a scene on which every f32 test errs.
 fn workplace() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
+    // Across both axes, so that what is rounded at the far ends matters in the middle.
+    let (length, width) = (3e4, 0.02);
     let mut needles = String::new();
     for number in 0..300 {
-        let z = -4.0 + f64::from(number) * 8.0 / 300.0;
-        let tilt = 0.01 * f64::from(number % 7);
-        needles += &format!(
-            "v -900 {} {z}\nv 1100 {} {}\nv 1100 {} {}\n",
-            2.0 - tilt,
-            2.1 + tilt,
-            z + tilt,
-            2.1 + tilt,
-            z + tilt + 5e-4
-        );
-        needles += "f -3 -2 -1\n";
+        let z = -7.0 + f64::from(number) * 14.0 / 300.0;
+        let (y, near, far) =
+            (2.0 + 0.01 * f64::from(number % 7), z - 0.7 * length, z + 0.7 * length);
+        needles += &format!("v {} {y} {near}\nv {length} {y} {far}\n", -length);
+        needles += &format!("v {length} {y} {}\nf -3 -2 -1\n", far + width);
     }
     fs::write(folder.path().join("needles.obj"), needles).unwrap();
     fs::write(folder.path().join("needles.toml"), NEEDLES).unwrap();
@@ -128,10 +124,15 @@ fn all_four_files_are_well_formed_and_agree() {
     assert_eq!(rows.len(), engines.len() + samples.len(), "no tessellation of a file");
     for (row, point) in rows.iter().zip(engines) {
         assert_eq!((row["trade"], row["name"]), ("engines", point["name"].as_str().unwrap()));
-        let number = |column: &str| row[column].parse::<f64>().unwrap();
-        assert_eq!(Some(number("mrays_per_second")), point["mrays_per_second"]["median"].as_f64());
-        assert_eq!(Some(number("wrong_per_million")), point["wrong_per_million"]["share"].as_f64());
-        assert_eq!(Some(number("memory_bytes")), point["memory_bytes"].as_f64());
+        let agree = |column: &str, value: &Value| {
+            let (in_csv, in_json) = (row[column].parse::<f64>().unwrap(), value.as_f64().unwrap());
+            // Both are written so that they can be read back, but readers may err in the last bit.
+            assert!((in_csv - in_json).abs() <= 1e-12 * in_json, "{column} of {row:?}");
+        };
+        agree("mrays_per_second", &point["mrays_per_second"]["median"]);
+        agree("mrays_per_second_with_build", &point["mrays_per_second_with_build"]["median"]);
+        agree("wrong_per_million", &point["wrong_per_million"]["share"]);
+        agree("memory_bytes", &point["memory_bytes"]);
         // Every contender has its row in the table and on the page, and its mark in the charts.
         assert!(table.contains(row["name"]) && html.contains(row["name"]), "{}", row["name"]);
         assert!(svg.contains(&format!("<title>{}: ", row["name"])), "{}", row["name"]);
@@ -189,7 +190,7 @@ fn wrong_answers_are_counted_as_compare_counts_them() {
         }
         assert_eq!(point["ties"], row["ties_blocked"], "{}", row["name"]);
     }
-    assert!(wrong > 20, "the scene is hard for f32: {wrong}");
+    assert!(wrong > 1000, "the scene is hard for f32: {wrong}");
     let listed = trade["disagreements"].as_array().unwrap();
     assert!(!listed.is_empty());
     for disagreement in listed {

@@ -60,7 +60,7 @@ pub struct Chart {
 /// Pixels around the plot.
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 14.0;
-const TOP: f64 = 56.0;
+const TOP: f64 = 64.0;
 const BELOW: f64 = 50.0;
 /// Pixels from line to line of text.
 const LINE: f64 = 22.0;
@@ -102,7 +102,7 @@ impl Chart {
             &mut svg,
             format_args!("<rect class=\"paper\" width=\"{width:.0}\" height=\"{height:.0}\"/>\n"),
         );
-        put(&mut svg, format_args!("<text class=\"title\" x=\"8\" y=\"20\">{title}</text>\n"));
+        put(&mut svg, format_args!("<text class=\"title\" x=\"8\" y=\"28\">{title}</text>\n"));
         let plot = Plot { width: width - LEFT - RIGHT, chart: self };
         plot.axes(&mut svg);
         plot.marks(&mut svg);

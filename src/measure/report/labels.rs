@@ -51,7 +51,7 @@ const DESCENT: f64 = 4.0;
 /// Width of a text in a proportional face without serifs: its average letter is a little over half its size.
 #[must_use]
 pub fn text_width(text: &str, size: f64) -> f64 {
-    text.chars().count() as f64 * 0.56 * size
+    text.chars().count() as f64 * 0.6 * size
 }
 
 impl Labels {

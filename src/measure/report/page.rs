@@ -201,9 +201,6 @@ impl Page {
     #[must_use]
     pub fn finish(self) -> String {
         let script = include_str!("page.js");
-        format!(
-            "{}</main>\n<footer></footer>\n<script>\n{script}</script>\n</body>\n</html>\n",
-            self.body
-        )
+        format!("{}</main>\n<script>\n{script}</script>\n</body>\n</html>\n", self.body)
     }
 }

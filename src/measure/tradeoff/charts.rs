@@ -1,6 +1,6 @@
 //! The charts of a report.
 
-use super::{EnginePoint, Report, SamplesPoint, TessellationPoint, Timing};
+use super::{EnginePoint, Report, SamplesPoint, TessellationPoint, Timing, told};
 use crate::measure::report::{
     Chart, Dimension, Hue, LogAxis, Look, Mark, Shape, bytes, document, tick_label,
 };
@@ -141,13 +141,13 @@ fn chart(
 /// What a pointer on a contender's mark shows.
 fn tooltip(point: &EnginePoint) -> String {
     format!(
-        "{}: {:.2} million rays/s ({:.2} with building), {:.2} wrong per million (95 %: {:.2} to {:.2}), {}",
+        "{}: {:.2} million rays/s ({:.2} with building), {} wrong per million (95 %: {} to {}), {}",
         point.name,
         point.mrays_per_second.median,
         point.mrays_per_second_with_build.median,
-        point.wrong_per_million.share,
-        point.wrong_per_million.low,
-        point.wrong_per_million.high,
+        told(point.wrong_per_million.share),
+        told(point.wrong_per_million.low),
+        told(point.wrong_per_million.high),
         bytes(point.memory_bytes as f64),
     )
 }

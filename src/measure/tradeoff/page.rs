@@ -1,7 +1,7 @@
 //! The report as an HTML page.
 
 use super::charts::{engine_charts, look_of, samples_chart, tessellation_charts};
-use super::{Disagreement, EnginePoint, Report, Timing};
+use super::{Disagreement, EnginePoint, Report, Timing, told};
 use crate::measure::grouped;
 use crate::measure::report::{Cell, Page, Shown, bytes};
 
@@ -36,7 +36,7 @@ fn findings(report: &Report) -> Vec<String> {
     let by_speed = |a: &&EnginePoint, b: &&EnginePoint| speed(a).total_cmp(&speed(b));
     let faultless = report.engines.iter().filter(|point| point.wrong() == 0);
     let count = faultless.clone().count();
-    let told = |point: &EnginePoint| {
+    let describe = |point: &EnginePoint| {
         format!(
             "{}, {:.2} million rays a second ({:.2} with building)",
             point.name, point.mrays_per_second.median, point.mrays_per_second_with_build.median
@@ -44,20 +44,20 @@ fn findings(report: &Report) -> Vec<String> {
     };
     let mut findings = Vec::new();
     if let Some(best) = faultless.max_by(by_speed) {
-        findings.push(format!("Fastest without a wrong answer: {}.", told(best)));
+        findings.push(format!("Fastest without a wrong answer: {}.", describe(best)));
     }
     let certain = report.engines.iter().filter(|point| point.test == "exact");
     if let Some(best) = certain.max_by(by_speed) {
-        findings.push(format!("Fastest that cannot be wrong: {}.", told(best)));
+        findings.push(format!("Fastest that cannot be wrong: {}.", describe(best)));
     }
     if let Some(best) = report.engines.iter().max_by(by_speed) {
         let wrong = &best.wrong_per_million;
         findings.push(format!(
-            "Fastest of all: {}; {:.2} wrong answers per million (95 %: {:.2} to {:.2}).",
-            told(best),
-            wrong.share,
-            wrong.low,
-            wrong.high
+            "Fastest of all: {}; {} wrong answers per million (95 %: {} to {}).",
+            describe(best),
+            told(wrong.share),
+            told(wrong.low),
+            told(wrong.high)
         ));
     }
     findings.push(format!(
@@ -113,8 +113,8 @@ fn row(point: &EnginePoint) -> Vec<Cell> {
         decimals(point.mrays_per_second.median),
         spread(point.mrays_per_second),
         decimals(point.mrays_per_second_with_build.median),
-        decimals(wrong.share),
-        Cell::number(&format!("{:.2} to {:.2}", wrong.low, wrong.high), wrong.high),
+        Cell::number(&told(wrong.share), wrong.share),
+        Cell::number(&format!("{} to {}", told(wrong.low), told(wrong.high)), wrong.high),
         count(point.false_blocked),
         count(point.false_clear),
         count(point.ties),

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write};
 
-use super::{EnginePoint, Report, SamplesPoint, TessellationPoint};
+use super::{EnginePoint, Report, SamplesPoint, TessellationPoint, told};
 use crate::measure::grouped;
 use crate::measure::report::bytes;
 
@@ -66,11 +66,11 @@ fn row(point: &EnginePoint) -> String {
     let wrong = &point.wrong_per_million;
     let spread = point.mrays_per_second.spread_text();
     format!(
-        "{:7.3} {spread:>7}    {:7.3}   {:17.2}   {:>15}  {:5}  {:>10}",
+        "{:7.3} {spread:>7}    {:7.3}   {:>17}   {:>15}  {:5}  {:>10}",
         point.mrays_per_second.median,
         point.mrays_per_second_with_build.median,
-        wrong.share,
-        format!("{:.2} to {:.2}", wrong.low, wrong.high),
+        told(wrong.share),
+        format!("{} to {}", told(wrong.low), told(wrong.high)),
         point.ties,
         bytes(point.memory_bytes as f64),
     )
