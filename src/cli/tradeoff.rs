@@ -7,11 +7,11 @@ use clap::Args;
 use super::failure::{Failure, say};
 use super::options::{check_outputs, load_scene, parse_size, pool, print, write_json};
 use super::progress::with_bar;
-use crate::measure::contender::{Choice, Selection};
+use crate::measure::contender::{Choice, Contender, Selection};
 use crate::measure::tradeoff::{Conditions, Report, csv, measure, page, plot, table};
 use crate::occlusion::{Backend, Test};
 use crate::render::{Progress, Settings};
-use crate::shadow::Method;
+use crate::shadow::{Combination, Method};
 use crate::whole_file::write_whole;
 
 const DETAILS: &str = "\
@@ -43,11 +43,12 @@ pub(super) struct Tradeoff {
     /// The triangle tests; all if not given
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     tests: Vec<Test>,
-    /// The methods that stand before the engines; all if not given
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    methods: Vec<Method>,
-    /// The ways to use Embree: names like avx2-high-8-coherent, `default`, or `all`; every quality and
-    /// width of the best instruction set if not given
+    /// The methods that stand before the engines, as --shadows of render has them; all memories and all
+    /// verdicts, one at a time, if not given
+    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    methods: Vec<Combination>,
+    /// The ways to use Embree: names like avx2-high-8-coherent, `default`, or `all`; if not given, every
+    /// quality and width of the best instruction set, all but the default without methods
     #[cfg(feature = "embree")]
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     embree_variants: Vec<String>,
@@ -85,7 +86,8 @@ pub(super) struct Tradeoff {
 
 impl Tradeoff {
     pub fn run(self) -> Result<(), Failure> {
-        let Selection { contenders, left_out } = self.choice()?.select();
+        let Selection { mut contenders, left_out } = self.choice()?.select();
+        contenders.retain(|contender| self.is_wanted(contender));
         if contenders.is_empty() {
             return Err(Failure::Input(format!("nothing to measure: {}", left_out.join("; "))));
         }
@@ -96,8 +98,8 @@ impl Tradeoff {
         check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = pool(self.threads)?;
         let scene = load_scene(&self.scene)?;
-        let is_named = !self.methods.is_empty();
-        for reason in left_out.iter().filter(|_| is_named) {
+        // Of combinations that nobody named, nobody misses those that do not exist.
+        for reason in left_out.iter().filter(|_| !self.methods.is_empty()) {
             say!("umbra: left out: {reason}");
         }
         let progress = Progress::default();
@@ -123,7 +125,18 @@ impl Tradeoff {
         write(&self.html, &|| page(report, &command_line()))
     }
 
-    fn conditions(&self, contenders: Vec<crate::measure::contender::Contender>) -> Conditions {
+    /// Whether a contender is measured unasked: what stands before Embree gains the same whatever Embree's
+    /// variant, so it is measured before the default one.
+    fn is_wanted(&self, contender: &Contender) -> bool {
+        #[cfg(feature = "embree")]
+        let is_default =
+            !self.embree_variants.is_empty() || contender.options.embree == Default::default();
+        #[cfg(not(feature = "embree"))]
+        let is_default = true;
+        is_default || !self.methods.is_empty() || contender.method == Combination::default()
+    }
+
+    fn conditions(&self, contenders: Vec<Contender>) -> Conditions {
         let (width, height) = self.size.unwrap_or(if self.quick { (160, 120) } else { (400, 300) });
         let settings = Settings {
             width,
@@ -156,8 +169,8 @@ impl Tradeoff {
 
     fn choice(&self) -> Result<Choice, Failure> {
         let methods = match &self.methods[..] {
-            [] if self.quick => vec![Method::Trace, Method::VoxelCache],
-            [] => Method::ALL.to_vec(),
+            [] if self.quick => [Method::Trace, Method::VoxelCache].map(Combination::from).to_vec(),
+            [] => Choice::every_method(),
             named => named.to_vec(),
         };
         Ok(Choice {

@@ -31,7 +31,7 @@ pub struct EnginePoint {
     /// The triangle test.
     pub test: &'static str,
     /// What stands before the engine.
-    pub method: &'static str,
+    pub method: String,
     /// Million queries a second, when everything is built.
     pub mrays_per_second: Timing,
     /// The same with everything that was built for them, the queries of one picture together.
@@ -164,7 +164,7 @@ impl EnginePoint {
             name: contender.to_string(),
             backend: contender.backend.name(),
             test: contender.test.name(),
-            method: contender.method.name(),
+            method: contender.method.to_string(),
             mrays_per_second: timing(&|turn| 1e-6 * rays / turn.warm),
             mrays_per_second_with_build: timing(&|turn| 1e-6 * rays / (turn.build + turn.cold)),
             build_seconds: timing(&|turn| turn.build),

@@ -23,7 +23,7 @@ use serde::Serialize;
 
 use super::contender::Contender;
 use super::grouped;
-use super::recording::Recording;
+use super::recording::{Recording, TooManyQueries};
 use crate::occlusion::BackendError;
 use crate::render::{Film, Progress, Settings, SettingsError};
 use crate::scene::{Scene, SceneError, builtin};
@@ -97,6 +97,9 @@ pub enum TradeoffError {
     /// The picture cannot be made.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+    /// There would be too much to ask.
+    #[error(transparent)]
+    Queries(#[from] TooManyQueries),
     /// Nothing would be measured.
     #[error("repetitions 0: give at least 1")]
     Repetitions,
@@ -218,6 +221,7 @@ pub fn measure(
 ) -> Result<Report, TradeoffError> {
     conditions.check()?;
     let Conditions { settings, repetitions, .. } = conditions;
+    Recording::check(scene, settings)?;
     let recording = Recording::of(scene, settings, &Progress::default())?;
     if recording.queries().is_empty() {
         return Err(TradeoffError::NoQueries);
