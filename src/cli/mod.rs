@@ -1,5 +1,6 @@
 //! The command line: arguments, progress, printing.
 
+mod compare;
 mod failure;
 mod options;
 mod paper;
@@ -22,6 +23,7 @@ Exit status: 0 done; 1 a comparison failed; 2 bad input, and nothing was written
 
 Examples:
   umbra render chair-room -o room.png
+  umbra compare chair-room
   umbra query chair-room --rays rays.csv -o blocked.csv
   umbra paper --quick
   umbra scene drum -o drum.glb";
@@ -37,6 +39,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Render(render::Render),
+    Compare(compare::Compare),
     Query(query::Query),
     Paper(paper::Paper),
     Scene(scene::SceneFile),
@@ -47,6 +50,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let outcome = match Cli::try_parse() {
         Ok(Cli { command: Command::Render(render) }) => render.run(),
+        Ok(Cli { command: Command::Compare(compare) }) => compare.run(),
         Ok(Cli { command: Command::Query(query) }) => query.run(),
         Ok(Cli { command: Command::Paper(paper) }) => paper.run(),
         Ok(Cli { command: Command::Scene(scene) }) => scene.run(),

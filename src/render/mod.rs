@@ -8,6 +8,7 @@
 mod answers;
 mod film;
 mod label;
+mod legend;
 mod order;
 mod output;
 mod piecewise;
@@ -18,6 +19,7 @@ mod whitted;
 
 pub use answers::{AnswerMap, Answered, Shown};
 pub use film::{Film, ShadowMask};
+pub use legend::{UNASKED, from_srgb, with_legend};
 pub use order::{Order, Place};
 pub use output::{OutputError, Picture, write_picture};
 pub use piecewise::{Pieces, Piecewise};

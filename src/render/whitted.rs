@@ -132,12 +132,7 @@ impl<'a> Unit<'a> {
     }
 
     /// Renders pixels of one scanline that follow each other, each sample by itself.
-    pub(super) fn stretch(
-        &mut self,
-        pixels: &[Place],
-        stretch: Range<usize>,
-        progress: &Progress,
-    ) {
+    pub(super) fn stretch(&mut self, pixels: &[Place], stretch: Range<usize>, progress: &Progress) {
         let before = stretch.start.checked_sub(1).map(|last| pixels[last].1);
         if before.is_some_and(|row| row != pixels[stretch.start].1) {
             self.shadows.begin_scanline();

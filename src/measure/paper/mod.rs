@@ -259,15 +259,8 @@ pub fn reproduce(
             .collect::<Result<Vec<_>, MethodError>>()?;
         let build = meter.read() - before;
         let Conditions { every, repetitions, .. } = *conditions;
-        let taken = render_in_turns(
-            &scene,
-            &*engine,
-            &contestants,
-            every,
-            repetitions,
-            &meter,
-            progress,
-        )?;
+        let taken =
+            render_in_turns(&scene, &*engine, &contestants, every, repetitions, &meter, progress)?;
         columns.push(column((backend, test), (load, build), every, &taken));
     }
     Ok(SceneReport {

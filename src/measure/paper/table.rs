@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::{Column, Gain, NODE_BYTES, SceneReport, storage};
+use crate::measure::grouped;
 use crate::shadow::Method;
 
 /// Width of the first column, and of the others.
@@ -72,22 +73,9 @@ fn memories(column: &Column) -> u64 {
 }
 
 /// 1.234 and 0.1 as 1.23 ±0.10 %.
-pub(super) fn gain(gain: Gain) -> String {
+pub fn gain(gain: Gain) -> String {
     let spread = gain.spread.map_or(String::new(), |spread| format!(" ±{spread:.2}"));
     format!("{:.2}{spread} %", gain.percent)
-}
-
-/// 1234567 as 1,234,567.
-pub(super) fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut grouped = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    grouped
 }
 
 /// Table 1 and §10 beside ours.
@@ -109,12 +97,6 @@ pub fn storage_table() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn digits_are_grouped_by_three() {
-        let numbers = [0, 7, 999, 1000, 123_456, 1_234_567];
-        assert_eq!(numbers.map(grouped), ["0", "7", "999", "1,000", "123,456", "1,234,567"]);
-    }
 
     #[test]
     fn nodes_take_what_the_paper_says() {

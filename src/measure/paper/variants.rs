@@ -5,8 +5,9 @@ use std::fmt;
 use serde::Serialize;
 
 use super::lockstep::{Contestant, Taken, render_in_turns};
-use super::table::{gain, grouped};
+use super::table::gain;
 use super::{Conditions, Gain, Meter, PaperError, Unit, percent};
+use crate::measure::grouped;
 use crate::occlusion::{BuildOptions, build};
 use crate::render::{Order, Progress, Settings};
 use crate::scene::builtin;
@@ -146,15 +147,8 @@ pub fn compare_variants(
                 Ok(Contestant { method, settings: Settings { order, ..settings } })
             })
             .collect::<Result<Vec<_>, MethodError>>()?;
-        let taken = render_in_turns(
-            &scene,
-            &*engine,
-            &contestants,
-            every,
-            repetitions,
-            &meter,
-            progress,
-        )?;
+        let taken =
+            render_in_turns(&scene, &*engine, &contestants, every, repetitions, &meter, progress)?;
         reports.push(VariantReport {
             scene: name,
             backend: backend.name(),
