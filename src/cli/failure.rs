@@ -91,4 +91,6 @@ input!(
     crate::render::OutputError,
     crate::measure::compare::CompareError,
     crate::measure::paper::PaperError,
+    crate::measure::recording::TooManyQueries,
+    crate::measure::tradeoff::TradeoffError,
 );
