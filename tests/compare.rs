@@ -19,7 +19,7 @@ use umbra::measure::recording::Recording;
 use umbra::occlusion::{Backend, Test};
 use umbra::render::{Progress, RecordedQuery, Settings};
 use umbra::scene::{Scene, builtin};
-use umbra::shadow::{Path as RayPath, ShadowQuery};
+use umbra::shadow::{Combination, Path as RayPath, ShadowQuery};
 
 /// A scene of these triangles, where they are.
 fn scene_of(mesh: &[Triangle]) -> Scene {
@@ -156,19 +156,24 @@ fn every_embree_variant_of_this_cpu_is_explained_on_hard_rays() {
     assert!(wrong.iter().all(|count| *count > 100), "only {wrong:?}: the rays are not hard");
 }
 
+/// Rays of the adversary's class and their triangles, each ray as often as fills a packet: coherent packets take
+/// their rays to be alike, and these are of all scales.
+fn adversarial(class: Class) -> (Scene, Recording) {
+    let queries = (0..).map(|index| adversary::query(class, index));
+    // Loaders drop what is not finite.
+    let finite = queries.filter(|(_, triangle)| triangle.iter().all(|corner| corner.is_finite()));
+    let (rays, mesh): (Vec<Ray>, Vec<Triangle>) = finite.take(48).unzip();
+    let rays: Vec<Ray> = rays.into_iter().flat_map(|ray| [ray; 16]).collect();
+    (scene_of(&mesh), recording_of(&rays))
+}
+
 #[test]
 fn every_contender_is_explained_on_the_adversarys_queries() {
+    let trace = vec![Combination::default()];
+    let choice = Choice { methods: trace, ..Choice::everything() };
     for &class in Class::ALL {
-        let queries = (0..).map(|index| adversary::query(class, index));
-        let finite =
-            queries.filter(|(_, triangle)| triangle.iter().all(|corner| corner.is_finite()));
-        let (rays, mesh): (Vec<Ray>, Vec<Triangle>) = finite.take(48).unzip();
-        let scene = scene_of(&mesh);
-        let report = compared(
-            &scene,
-            &recording_of(&rays),
-            &Choice { methods: Vec::new(), ..Choice::everything() },
-        );
+        let (scene, recording) = adversarial(class);
+        let report = compared(&scene, &recording, &choice);
         assert_eq!(report.failure(), None, "{}: {}", class.name(), report.listing(5));
     }
 }

@@ -30,8 +30,9 @@ impl TriangleTest for Pluecker {
         let w = dot(cross(e2, add(v1, v2)), direction);
         let epsilon = L::splat(EDGE_EPSILON).mul(u.add(v).add(w).abs());
         let minus_epsilon = epsilon.flip_sign(L::splat(-1.0));
+        // Embree's `>=` is true of NaN, which volumes are that overflow; its `<=` is not.
         let inside =
-            L::or(minus_epsilon.less_equal(u.min(v).min(w)), u.max(v).max(w).less_equal(epsilon));
+            L::or(u.min(v).min(w).not_less(minus_epsilon), u.max(v).max(w).less_equal(epsilon));
         if L::bits(inside) == 0 {
             return Claims::default();
         }
