@@ -183,7 +183,7 @@ fn pluecker(ray: &Ray, triangle: &Triangle) -> Sides {
     let quotient_error = ROUNDING * (p * slope.abs() + q * start.abs());
     Sides {
         edges,
-        // The edges are fat by 2⁻²³ of the sum of the volumes: a fifth of 10u of their permanents.
+        // The edges are fat by 2⁻²³ of the sum of the volumes, 48u C² |d|₁ at most: less than the bound once more.
         edge_error: 2.0 * volume_error,
         slope: slope.abs(),
         slope_error,
