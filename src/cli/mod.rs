@@ -1,5 +1,7 @@
 //! The command line: arguments, progress, printing.
 
+mod certify;
+mod extremes;
 mod failure;
 mod options;
 mod paper;
@@ -24,6 +26,7 @@ Examples:
   umbra render chair-room -o room.png
   umbra query chair-room --rays rays.csv -o blocked.csv
   umbra paper --quick
+  umbra certify --seconds 60
   umbra scene drum -o drum.glb";
 
 /// Does light reach this point? Exact and fast occlusion queries for triangle scenes.
@@ -39,6 +42,8 @@ enum Command {
     Render(render::Render),
     Query(query::Query),
     Paper(paper::Paper),
+    Certify(certify::Certify),
+    Extremes(extremes::Extremes),
     Scene(scene::SceneFile),
 }
 
@@ -49,6 +54,8 @@ pub fn main() -> ExitCode {
         Ok(Cli { command: Command::Render(render) }) => render.run(),
         Ok(Cli { command: Command::Query(query) }) => query.run(),
         Ok(Cli { command: Command::Paper(paper) }) => paper.run(),
+        Ok(Cli { command: Command::Certify(certify) }) => certify.run(),
+        Ok(Cli { command: Command::Extremes(extremes) }) => extremes.run(),
         Ok(Cli { command: Command::Scene(scene) }) => scene.run(),
         Err(error) => match error.kind() {
             // A closed pipe is no failure.

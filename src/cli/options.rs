@@ -1,6 +1,7 @@
 //! Arguments that several commands share.
 
 use std::fs::OpenOptions;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -71,16 +72,21 @@ impl EngineOptions {
 
     /// A pool of the threads that were asked for.
     pub fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
-        let threads = match self.threads {
-            Some(0) => return Err(Failure::Input("--threads 0: give at least 1".to_owned())),
-            Some(n) => n,
-            None => 0,
-        };
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|e| Failure::Input(format!("cannot start {threads} threads: {e}")))
+        thread_pool(self.threads)
     }
+}
+
+/// A pool of so many threads; of as many as there are processors if no number is given.
+pub(super) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+    let threads = match threads {
+        Some(0) => return Err(Failure::Input("--threads 0: give at least 1".to_owned())),
+        Some(n) => n,
+        None => 0,
+    };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|e| Failure::Input(format!("cannot start {threads} threads: {e}")))
 }
 
 /// What stands before the engine.
@@ -185,4 +191,9 @@ pub(super) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(
     let mut text = serde_json::to_string_pretty(value).expect("statistics are plain data");
     text.push('\n');
     write_whole(path, text.as_bytes()).map_err(|reason| Failure::unwritable(path, &reason))
+}
+
+/// To standard output.
+pub(super) fn print(text: &str) -> Result<(), Failure> {
+    std::io::stdout().write_all(text.as_bytes()).map_err(|_| Failure::NoReader)
 }

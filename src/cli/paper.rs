@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{check_outputs, parse_size, write_json};
+use super::options::{check_outputs, parse_size, print, write_json};
 use super::progress::with_bar;
 use crate::measure::paper::{
     Conditions, NODE_BYTES, Published, SceneReport, Storage, TABLE, reproduce, storage,
@@ -140,10 +140,4 @@ fn is_offered(backend: Backend) -> bool {
         Backend::Embree => cfg!(feature = "embree"),
         Backend::Brute => false,
     }
-}
-
-/// To standard output.
-fn print(text: &str) -> Result<(), Failure> {
-    use std::io::Write;
-    std::io::stdout().write_all(text.as_bytes()).map_err(|_| Failure::NoReader)
 }

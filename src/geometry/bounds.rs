@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-/// A closed axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A closed axis-aligned box; by default, the zero point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// Least coordinates.
     pub min: Vec3,

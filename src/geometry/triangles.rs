@@ -10,6 +10,12 @@ pub type TriangleId = u32;
 /// The three corners of one triangle.
 pub type Triangle = [Vec3; 3];
 
+/// Whether no corner is infinite or NaN. Triangles that are not finite block nothing.
+#[must_use]
+pub fn is_finite(triangle: &Triangle) -> bool {
+    triangle.iter().all(|corner| corner.is_finite())
+}
+
 /// The triangles of a scene, opaque ones first.
 ///
 /// 48 bytes a triangle: three corners, each padded to 16 bytes so that it loads as one vector.
@@ -86,7 +92,7 @@ impl Triangles {
         Bounds::of(self.get(id))
     }
 
-    /// The box of all triangles; `None` if there are none.
+    /// The box of all triangles that are [finite](is_finite); `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.bounds
@@ -107,7 +113,8 @@ impl FromIterator<Triangle> for Triangles {
 }
 
 fn bounds(corners: &[[Vec3A; 3]]) -> Option<Bounds> {
-    let mut corners = corners.iter().flatten().copied();
+    let finite = corners.iter().filter(|corners| corners.iter().all(|corner| corner.is_finite()));
+    let mut corners = finite.flatten().copied();
     let first = corners.next()?;
     let (min, max) =
         corners.fold((first, first), |(min, max), corner| (min.min(corner), max.max(corner)));

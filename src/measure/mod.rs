@@ -1,3 +1,4 @@
 //! The measuring bench.
 
+pub mod extremes;
 pub mod paper;

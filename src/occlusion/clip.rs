@@ -50,6 +50,8 @@ pub(super) fn clip(ray: &Ray, min: DVec3, max: DVec3) -> Clip {
 pub(super) fn padding(bounds: &Bounds, resolution: f64) -> f64 {
     /// The own-box test of f32 hits allows 16 roundings of origin and corner each; twice that.
     const ROUNDINGS: f64 = 64.0 * f32::EPSILON as f64;
+    /// A scene that is one point needs some room too: far below the least f32, and its cube is no zero.
+    const LEAST: f64 = 1e-60;
     let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-    resolution.max(ROUNDINGS * f64::from(largest)).max(f64::MIN_POSITIVE)
+    resolution.max(ROUNDINGS * f64::from(largest)).max(LEAST)
 }

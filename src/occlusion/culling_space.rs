@@ -20,7 +20,7 @@ use obvhs::aabb::Aabb;
 use obvhs::ray::Ray as CullingRay;
 
 use super::clip::{Clip, clip, padding};
-use crate::geometry::{Bounds, Ray};
+use crate::geometry::{Bounds, Ray, Triangles, is_finite};
 
 /// See the table above.
 const PADDING: f64 = 1.0 / (1 << 20) as f64;
@@ -54,15 +54,28 @@ pub(super) enum Passage {
 }
 
 impl CullingSpace {
-    pub(super) fn new(bounds: &Bounds) -> Self {
+    /// The space of some triangles; of none, that of a point.
+    pub(super) fn new(triangles: &Triangles) -> Self {
+        let bounds = &triangles.bounds().unwrap_or_default();
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let side = (max - min).max_element();
         let pad = padding(bounds, PADDING * side);
         Self { min: min - pad, max: max + pad, scale: (side + 2.0 * pad).recip(), pad }
     }
 
+    /// The padded boxes of all triangles in culling space.
+    pub(super) fn boxes(&self, triangles: &Triangles) -> Vec<Aabb> {
+        // What is not finite blocks nothing; any box does.
+        let nowhere = Bounds { min: self.min.as_vec3(), max: self.min.as_vec3() };
+        let bounds = |id| {
+            let triangle = triangles.get(id);
+            if is_finite(&triangle) { Bounds::of(triangle) } else { nowhere }
+        };
+        (0..triangles.len() as u32).map(|id| self.map(&bounds(id))).collect()
+    }
+
     /// The padded box in culling space.
-    pub(super) fn map(&self, bounds: &Bounds) -> Aabb {
+    fn map(&self, bounds: &Bounds) -> Aabb {
         let place = |corner: DVec3| Vec3A::from(((corner - self.min) * self.scale).as_vec3());
         Aabb {
             min: place(bounds.min.as_dvec3() - self.pad),

@@ -9,14 +9,17 @@
 //!
 //! It runs on hits only, in f64, some 10 ns.
 
-use crate::geometry::{Bounds, Ray, Triangle};
+use crate::geometry::{Bounds, Ray, Triangle, is_finite};
 
 /// How far outside the box a ray may pass, in units of the coordinates' rounding: Embree's box tests
 /// err by up to 3 ulp in each plane distance, twice, and by another in the reciprocal.
 const TOLERANCE: f64 = 16.0 * f32::EPSILON as f64;
 
-/// Whether the segment comes near the box of the triangle.
+/// Whether the segment comes near the box of the triangle, which has none if it is not finite.
 pub(super) fn meets(ray: &Ray, triangle: &Triangle) -> bool {
+    if !is_finite(triangle) {
+        return false;
+    }
     let bounds = Bounds::of(*triangle);
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());

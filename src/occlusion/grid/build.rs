@@ -53,7 +53,7 @@ struct Division {
 pub(super) fn build(triangles: &Triangles, outermost: Level, nested: bool) -> Grid {
     let sorted = sort(&outermost, triangles);
     let voxels = outermost.voxel_count();
-    let scene = triangles.bounds().expect("there are triangles");
+    let scene = triangles.bounds().unwrap_or_default();
     let divider = Divider { triangles, scene };
     let crowded: Vec<usize> =
         (0..voxels).filter(|&voxel| nested && sorted.list(voxel).len() > CROWDED).collect();

@@ -67,13 +67,10 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Sorts the triangles into voxels, in parallel.
-    ///
-    /// # Panics
-    /// Without triangles.
+    /// Sorts the triangles into voxels, in parallel. Without triangles, it is a grid of nothing.
     #[must_use]
     pub fn new(triangles: &Triangles, options: GridOptions) -> Self {
-        let bounds = triangles.bounds().expect("there are triangles");
+        let bounds = triangles.bounds().unwrap_or_default();
         let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
         // A flat scene gets a box with some depth, so that a voxel has a volume.
         let thickness = padding(&bounds, extent.max_element() * PADDING / MOST_VOXELS);
@@ -90,6 +87,12 @@ impl Grid {
     #[must_use]
     pub fn resolution(&self) -> [u32; 3] {
         self.levels[0].resolution
+    }
+
+    /// The corner of a voxel of the outermost grid with the least coordinates.
+    #[must_use]
+    pub fn corner(&self, voxel: [u32; 3]) -> DVec3 {
+        self.levels[0].corner(voxel)
     }
 
     /// Number of voxels, those of nested grids included.
