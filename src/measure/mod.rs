@@ -1,4 +1,7 @@
 //! The measuring bench.
 
+pub mod contender;
 pub mod extremes;
 pub mod paper;
+pub mod recording;
+pub mod wilson;

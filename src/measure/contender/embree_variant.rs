@@ -1,0 +1,189 @@
+//! Names for the ways to use Embree, such as `avx2-high-8-coherent`.
+
+use std::fmt;
+use std::str::FromStr;
+
+use clap::ValueEnum;
+
+use crate::occlusion::{EmbreeOptions, Isa, PacketWidth, Quality};
+
+/// A way to use Embree, with a name: instruction set, build quality, rays at once, coherence, joined by
+/// dashes. A part that is missing is the default's: the best instruction set, medium, 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EmbreeVariant(pub EmbreeOptions);
+
+/// Why a name means no way to use Embree.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum VariantError {
+    /// A part is not known.
+    #[error(
+        "'{0}' is no part of an Embree variant; join with dashes one of each: sse2, sse4.2, avx, avx2, avx512; low, medium, high; 1, 4, 8, 16; coherent. Or say default, or all"
+    )]
+    Part(String),
+    /// This CPU cannot.
+    #[error("this CPU has no {0}; it has {here}", here = available().map(|isa| isa.to_string()).collect::<Vec<_>>().join(", "))]
+    Isa(Isa),
+    /// These kernels cannot.
+    #[error("{isa} has no packets of {width}; {isa} goes up to {widest}", widest = name_of(widest(*isa)))]
+    Width {
+        /// The instruction set.
+        isa: Isa,
+        /// Rays at once.
+        width: &'static str,
+    },
+    /// It would say nothing.
+    #[error("coherent is said of packets: add 4, 8 or 16")]
+    Coherent,
+}
+
+/// All widths.
+const WIDTHS: [PacketWidth; 4] =
+    [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen];
+
+fn available() -> impl DoubleEndedIterator<Item = Isa> {
+    Isa::ALL.into_iter().filter(|isa| isa.is_available())
+}
+
+fn name_of(width: PacketWidth) -> &'static str {
+    match width {
+        PacketWidth::One => "1",
+        PacketWidth::Four => "4",
+        PacketWidth::Eight => "8",
+        PacketWidth::Sixteen => "16",
+    }
+}
+
+/// The widest packets that an instruction set has kernels for.
+fn widest(isa: Isa) -> PacketWidth {
+    match isa {
+        Isa::Sse2 | Isa::Sse42 => PacketWidth::Four,
+        Isa::Avx | Isa::Avx2 => PacketWidth::Eight,
+        Isa::Avx512 => PacketWidth::Sixteen,
+    }
+}
+
+fn place(width: PacketWidth) -> usize {
+    WIDTHS.iter().position(|&other| other == width).expect("they are all there")
+}
+
+impl EmbreeVariant {
+    /// Every one that this CPU has.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let mut all = Vec::new();
+        for isa in available() {
+            for &quality in Quality::value_variants() {
+                for &width in &WIDTHS[..=place(widest(isa))] {
+                    let packets = width != PacketWidth::One;
+                    for coherent in if packets { &[false, true][..] } else { &[false] } {
+                        let isa = Some(isa);
+                        let coherent = *coherent;
+                        all.push(Self(EmbreeOptions { quality, isa, width, coherent }));
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    /// The variants of a list on the command line: names, `default` or `all`.
+    ///
+    /// # Errors
+    /// If a name means no way to use Embree here.
+    pub fn list(names: &[String]) -> Result<Vec<Self>, VariantError> {
+        let mut variants = Vec::new();
+        for name in names {
+            match &name[..] {
+                "all" => variants.extend(Self::all()),
+                name => variants.push(name.parse()?),
+            }
+        }
+        Ok(variants)
+    }
+
+    fn check(self) -> Result<Self, VariantError> {
+        let EmbreeOptions { isa, width, coherent, .. } = self.0;
+        if let Some(isa) = isa.filter(|isa| !isa.is_available()) {
+            return Err(VariantError::Isa(isa));
+        }
+        let isa = isa.or(available().next_back()).unwrap_or(Isa::Sse2);
+        if place(width) > place(widest(isa)) {
+            return Err(VariantError::Width { isa, width: name_of(width) });
+        }
+        if coherent && width == PacketWidth::One {
+            return Err(VariantError::Coherent);
+        }
+        Ok(self)
+    }
+}
+
+impl FromStr for EmbreeVariant {
+    type Err = VariantError;
+
+    fn from_str(name: &str) -> Result<Self, VariantError> {
+        let mut options = EmbreeOptions::default();
+        if name == "default" {
+            return Ok(Self(options));
+        }
+        for part in name.split('-') {
+            if let Some(isa) = Isa::ALL.into_iter().find(|isa| isa.to_string() == part) {
+                options.isa = Some(isa);
+            } else if let Ok(quality) = Quality::from_str(part, true) {
+                options.quality = quality;
+            } else if let Some(&width) = WIDTHS.iter().find(|&&width| name_of(width) == part) {
+                options.width = width;
+            } else if part == "coherent" {
+                options.coherent = true;
+            } else {
+                return Err(VariantError::Part(part.to_owned()));
+            }
+        }
+        Self(options).check()
+    }
+}
+
+impl fmt::Display for EmbreeVariant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let EmbreeOptions { quality, isa, width, coherent } = self.0;
+        if let Some(isa) = isa {
+            write!(f, "{isa}-")?;
+        }
+        let quality = quality.to_possible_value().expect("every quality has a name");
+        write!(f, "{}-{}", quality.get_name(), name_of(width))?;
+        if coherent { f.write_str("-coherent") } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_variant_of_this_cpu_is_known_by_its_name() {
+        let all = EmbreeVariant::all();
+        assert!(all.len() >= 9, "SSE2 alone has 9");
+        for variant in all {
+            assert_eq!(variant.to_string().parse(), Ok(variant));
+        }
+    }
+
+    #[test]
+    fn parts_that_are_missing_are_the_default() {
+        assert_eq!("default".parse(), Ok(EmbreeVariant::default()));
+        assert_eq!("medium".parse(), Ok(EmbreeVariant::default()));
+        let options = EmbreeOptions { quality: Quality::High, ..EmbreeOptions::default() };
+        assert_eq!("high".parse(), Ok(EmbreeVariant(options)));
+    }
+
+    #[test]
+    fn names_that_mean_nothing_say_what_would() {
+        let refused = |name: &str, told: &str| {
+            let said = name.parse::<EmbreeVariant>().unwrap_err().to_string();
+            assert!(said.contains(told), "{name}: {said}");
+        };
+        refused("avx3-high", "'avx3' is no part");
+        refused("", "'' is no part");
+        refused("sse2-8", "sse2 has no packets of 8; sse2 goes up to 4");
+        refused("high-coherent", "add 4, 8 or 16");
+    }
+}

@@ -1,0 +1,113 @@
+//! The shadow queries of a render, recorded once so that every contender gets the same bits.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::exact::Exact;
+use crate::geometry::Ray;
+use crate::occlusion::{Bvh2, Engine, Occlusion};
+use crate::render::{Progress, RecordedQuery, Settings, SettingsError, render};
+use crate::scene::Scene;
+use crate::shadow::{Answer, Prepared, ShadowQuery, Trace};
+
+/// Queries that one worker answers with the same memories; a tile with one light asks 256.
+const BLOCK: usize = 4096;
+
+/// The shadow queries of a picture: tile by tile, within a tile light by light, as the renderer asks them.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    queries: Vec<RecordedQuery>,
+    /// Queries that follow each other and ask about the same light.
+    runs: Vec<Range<usize>>,
+    /// Runs that make up a block.
+    blocks: Vec<Range<usize>>,
+}
+
+impl Recording {
+    /// Renders the picture by the exact test, and keeps what was asked.
+    ///
+    /// # Errors
+    /// If the settings make no picture.
+    pub fn of(
+        scene: &Scene,
+        settings: &Settings,
+        progress: &Progress,
+    ) -> Result<Self, SettingsError> {
+        let walk = Bvh2::new(&scene.triangles);
+        let engine = Engine::<_, Exact>::new(scene.triangles.clone(), walk, None);
+        let settings = Settings { record: true, ..*settings };
+        let rendered = render(scene, &engine, &Trace::new(&engine), &settings, progress)?;
+        Ok(Self::new(settings.width, settings.height, rendered.queries))
+    }
+
+    /// Queries of a picture of that size, in the order in which they are to be asked.
+    #[must_use]
+    pub fn new(width: u32, height: u32, queries: Vec<RecordedQuery>) -> Self {
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        for run in queries.chunk_by(|a, b| a.light == b.light) {
+            let start = runs.last().map_or(0, |run| run.end);
+            runs.push(start..start + run.len());
+        }
+        let mut blocks: Vec<Range<usize>> = Vec::new();
+        let mut start = 0;
+        for (place, run) in runs.iter().enumerate() {
+            if run.end - runs[start].start >= BLOCK || place + 1 == runs.len() {
+                blocks.push(start..place + 1);
+                start = place + 1;
+            }
+        }
+        Self { width, height, queries, runs, blocks }
+    }
+
+    /// The queries.
+    #[must_use]
+    pub fn queries(&self) -> &[RecordedQuery] {
+        &self.queries
+    }
+
+    /// Their rays.
+    pub fn rays(&self) -> impl ExactSizeIterator<Item = &Ray> {
+        self.queries.iter().map(|recorded| &recorded.query.ray)
+    }
+
+    /// The runs of queries about one light each, in order: light and place.
+    pub fn runs(&self) -> impl Iterator<Item = (usize, Range<usize>)> {
+        self.runs.iter().map(|run| (self.queries[run.start].light as usize, run.clone()))
+    }
+
+    /// Asks a method all queries, on all threads of the current pool: whether each is blocked. Memories are
+    /// fresh at places that do not depend on the number of threads.
+    #[must_use]
+    pub fn answers(&self, method: &dyn Prepared) -> Vec<bool> {
+        let answered: Vec<Vec<bool>> =
+            self.blocks.par_iter().map(|block| self.answer_block(method, block.clone())).collect();
+        answered.concat()
+    }
+
+    fn answer_block(&self, method: &dyn Prepared, block: Range<usize>) -> Vec<bool> {
+        let mut worker = method.worker();
+        let mut blocked = Vec::new();
+        let (mut asked, mut answers): (Vec<ShadowQuery>, Vec<Answer>) = (Vec::new(), Vec::new());
+        for run in &self.runs[block] {
+            let queries = &self.queries[run.clone()];
+            asked.clear();
+            asked.extend(queries.iter().map(|recorded| recorded.query));
+            answers.clear();
+            answers.resize(asked.len(), Answer::default());
+            worker.answer(queries[0].light as usize, &asked, &mut answers);
+            blocked.extend(answers.iter().map(|answer| answer.blocked));
+        }
+        blocked
+    }
+
+    /// Asks an engine alone.
+    #[must_use]
+    pub fn answers_of(&self, engine: &dyn Occlusion) -> Vec<bool> {
+        self.answers(&Trace::new(engine))
+    }
+}
