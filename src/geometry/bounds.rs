@@ -43,6 +43,12 @@ impl Bounds {
         (self.max.as_dvec3() - self.min.as_dvec3()).length()
     }
 
+    /// The largest magnitude of a coordinate.
+    #[must_use]
+    pub fn largest_coordinate(&self) -> f32 {
+        self.min.abs().max(self.max.abs()).max_element()
+    }
+
     /// Whether the point is in the closed box.
     #[must_use]
     pub fn contains(&self, point: Vec3) -> bool {

@@ -3,6 +3,7 @@
 use glam::{Vec3, Vec3A};
 
 use super::Bounds;
+use super::intersect::vicinity;
 
 /// Index of a triangle in [`Triangles`].
 pub type TriangleId = u32;
@@ -25,6 +26,7 @@ pub struct Triangles {
     corners: Vec<[Vec3A; 3]>,
     opaque: u32,
     bounds: Option<Bounds>,
+    slack: f64,
 }
 
 impl Triangles {
@@ -44,7 +46,8 @@ impl Triangles {
         corners.extend(transparent.into_iter().map(pad));
         count(corners.len());
         let bounds = bounds(&corners);
-        Self { corners, opaque, bounds }
+        let slack = vicinity::slack(bounds.unwrap_or_default().largest_coordinate());
+        Self { corners, opaque, bounds, slack }
     }
 
     /// Number of triangles.
@@ -96,6 +99,14 @@ impl Triangles {
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.bounds
+    }
+
+    /// How near a ray must come to one of these triangles for a hit by a test that rounds to count: some
+    /// roundings of the largest coordinate.
+    #[must_use]
+    #[inline]
+    pub fn slack(&self) -> f64 {
+        self.slack
     }
 
     /// Bytes held.
