@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use common::{Aim, REAL_SCENES, Random, real_scenes, soup, sphere};
 use glam::Vec3;
-use umbra::geometry::intersect::{AtLeast, AtMost, FastBox, Moller, Pluecker, RobustBox};
 use umbra::geometry::lanes::Arithmetic;
 use umbra::geometry::{Ray, Triangle, Triangles};
+use umbra::occlusion::embree_bounds::{at_least, at_most};
 use umbra::occlusion::{
-    Backend, Brute, BuildOptions, Embree, EmbreeOptions, Engine, Isa, Occlusion, Quality, Tally,
-    Test, build,
+    Backend, Brute, BuildOptions, Embree, EmbreeOptions, Isa, Occlusion, Quality, Tally, Test,
+    build,
 };
 use umbra::render::{Progress, RecordedQuery, Settings, render};
 use umbra::scene::{Scene, builtin, load};
@@ -111,24 +111,11 @@ fn bounds(
     robust: bool,
     arithmetic: Arithmetic,
 ) -> [Box<dyn Occlusion>; 2] {
-    macro_rules! brute {
-        ($test:ty) => {
-            Box::new(Engine::<_, $test>::new(
-                triangles.clone(),
-                Brute::new(triangles),
-                Some(arithmetic),
-            ))
-        };
-    }
-    let lower: Box<dyn Occlusion> = match (robust, arithmetic) {
-        (true, _) => brute!(AtLeast<Pluecker, RobustBox>),
-        (false, Arithmetic::Sse) => brute!(AtLeast<Moller, FastBox<false, false>>),
-        (false, Arithmetic::Avx2) => brute!(AtLeast<Moller, FastBox<true, false>>),
-        (false, Arithmetic::Avx512) => brute!(AtLeast<Moller, FastBox<true, true>>),
-    };
-    let upper: Box<dyn Occlusion> =
-        if robust { brute!(AtMost<Pluecker>) } else { brute!(AtMost<Moller>) };
-    [lower, upper]
+    let brute = || Brute::new(triangles);
+    [
+        at_least(triangles, brute(), robust, arithmetic),
+        at_most(triangles, brute(), robust, arithmetic),
+    ]
 }
 
 #[test]

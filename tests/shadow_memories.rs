@@ -13,7 +13,7 @@ use umbra::geometry::{Ray, Triangle, TriangleId, Triangles};
 use umbra::occlusion::{Backend, BuildOptions, Cell, LeftOut, Occlusion, Tally, Test, build};
 use umbra::shadow::{
     Answer, Caster, Direct, Fronts, Inquiry, LastCell, LastOccluder, LastVoxel, Memory, Nearby,
-    Path, PerLight, PerPath, Retest, ShadowQuery, Shadows, Shelf, Sparing, Tolerance, Undecided,
+    Path, PerLight, PerPath, Retest, ShadowQuery, Shadows, Shelf, Sparing, Tolerance,
 };
 
 /// A mesh whose last third is glass, and every backend over it, brute force first.
@@ -83,7 +83,7 @@ fn scrambled<M: Memory, K: Shelf<M>, I: Inquiry>(
     seed: u64,
 ) {
     let mut random = Random(seed);
-    let mut caster = Caster::<_, M, K, I>::new(&Undecided, inquiry, shelf, shared);
+    let mut caster = Caster::<M, K, I>::new(inquiry, shelf, shared);
     let mut left_out = LeftOut::new(world.opaque(), false);
     for _ in 0..120 {
         let aim = Aim::ALL[random.below(Aim::ALL.len())];

@@ -5,14 +5,14 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use indicatif::HumanCount;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{check_outputs, print, thread_pool, write_json};
+use super::options::{check_outputs, pool, print, write_json};
 use super::progress::with_rate;
 use crate::exact::adversary::Class;
 use crate::exact::campaign::{Summary, campaign};
+use crate::measure::grouped;
 
 /// Queries of a class between two looks at the clock: a second's work at most.
 const BLOCK: u64 = 100_000;
@@ -73,7 +73,7 @@ impl Certify {
         }
         let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[])?;
-        let pool = thread_pool(self.threads)?;
+        let pool = pool(self.threads)?;
         let start = Instant::now();
         let done = AtomicU64::new(0);
         let rows = with_rate(
@@ -151,7 +151,7 @@ fn table(rows: &[Row], all: Summary, seconds: f64) -> String {
             summary.by_oracle,
             summary.wrong,
         ]
-        .map(|number| HumanCount(number).to_string())
+        .map(|number| grouped(number))
     };
     for row in rows {
         text += &line(row.class, numbers(&row.summary));

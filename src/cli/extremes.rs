@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{check_outputs, print, thread_pool, write_json};
+use super::options::{check_outputs, pool, print, write_json};
 use super::progress::with_word;
 use crate::measure::extremes::cases::{Case, cases};
 use crate::measure::extremes::{Conditions, Report, examine, head};
@@ -59,7 +59,7 @@ impl Extremes {
         }
         let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[])?;
-        let pool = thread_pool(self.threads)?;
+        let pool = pool(self.threads)?;
         let conditions = self.conditions();
         let wanted = |case: &Case| self.cases.is_empty() || self.cases.contains(&case.name);
         let cases: Vec<_> = cases().into_iter().filter(wanted).collect();

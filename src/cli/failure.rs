@@ -89,5 +89,6 @@ input!(
     crate::shadow::MethodError,
     crate::render::SettingsError,
     crate::render::OutputError,
+    crate::measure::compare::CompareError,
     crate::measure::paper::PaperError,
 );

@@ -1,6 +1,7 @@
 //! The command line: arguments, progress, printing.
 
 mod certify;
+mod compare;
 mod extremes;
 mod failure;
 mod options;
@@ -24,6 +25,7 @@ Exit status: 0 done; 1 a comparison failed; 2 bad input, and nothing was written
 
 Examples:
   umbra render chair-room -o room.png
+  umbra compare chair-room
   umbra query chair-room --rays rays.csv -o blocked.csv
   umbra paper --quick
   umbra certify --seconds 60
@@ -40,6 +42,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Render(render::Render),
+    Compare(compare::Compare),
     Query(query::Query),
     Paper(paper::Paper),
     Certify(certify::Certify),
@@ -52,6 +55,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let outcome = match Cli::try_parse() {
         Ok(Cli { command: Command::Render(render) }) => render.run(),
+        Ok(Cli { command: Command::Compare(compare) }) => compare.run(),
         Ok(Cli { command: Command::Query(query) }) => query.run(),
         Ok(Cli { command: Command::Paper(paper) }) => paper.run(),
         Ok(Cli { command: Command::Certify(certify) }) => certify.run(),

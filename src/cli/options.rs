@@ -1,7 +1,6 @@
 //! Arguments that several commands share.
 
 use std::fs::OpenOptions;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -11,7 +10,7 @@ use super::failure::{Failure, say};
 use super::progress::with_word;
 use crate::occlusion::{Backend, BuildOptions, GridOptions, Occlusion, Test, build};
 use crate::scene::Scene;
-use crate::shadow::{Method, Plan, Retest, SelfShadow};
+use crate::shadow::{Combination, Method, Plan, Retest, SelfShadow};
 use crate::whole_file::{folder_of, write_whole};
 
 /// Which engine answers.
@@ -30,9 +29,32 @@ pub(super) struct EngineOptions {
     /// A plain uniform grid: crowded voxels are not divided
     #[arg(long)]
     pub uniform: bool,
+    /// Most memory that engine and shadow method may take, like 512M or 2G: what is prepared becomes coarser
+    /// or steps aside, and says so; a quarter of the machine if not given
+    #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
+    pub memory: Option<u64>,
     /// Threads; all processors if not given
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
+}
+
+/// A number of bytes, with K, M, G or T for powers of 1024.
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    let number = text.trim_end_matches(['B', 'b']).trim_end_matches('i');
+    let digits = number.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let shift = match &number[digits.len()..] {
+        "" => Some(0),
+        "K" | "k" => Some(10),
+        "M" | "m" => Some(20),
+        "G" | "g" => Some(30),
+        "T" | "t" => Some(40),
+        _ => None,
+    };
+    let bytes = digits.parse::<f64>().ok().filter(|number| *number >= 0.0 && number.is_finite());
+    let (Some(bytes), Some(shift)) = (bytes, shift) else {
+        return Err("give it as bytes, or like 512M or 2.5G".to_owned());
+    };
+    Ok((bytes * f64::from(shift).exp2()) as u64)
 }
 
 fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
@@ -72,12 +94,12 @@ impl EngineOptions {
 
     /// A pool of the threads that were asked for.
     pub fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
-        thread_pool(self.threads)
+        pool(self.threads)
     }
 }
 
-/// A pool of so many threads; of as many as there are processors if no number is given.
-pub(super) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+/// A pool of so many threads; of all processors if no number is given.
+pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
     let threads = match threads {
         Some(0) => return Err(Failure::Input("--threads 0: give at least 1".to_owned())),
         Some(n) => n,
@@ -92,9 +114,8 @@ pub(super) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, F
 /// What stands before the engine.
 #[derive(Args)]
 pub(super) struct ShadowOptions {
-    /// The method that stands before the engine
-    #[arg(long, value_enum, default_value_t)]
-    pub shadows: Method,
+    #[arg(long, value_name = "METHOD", default_value_t, help = shadows_help())]
+    pub shadows: Combination,
     /// What keeps a shadow ray from meeting the triangle that it starts on
     #[arg(long, value_enum, default_value_t)]
     self_shadow: SelfShadow,
@@ -113,11 +134,18 @@ pub(super) struct ShadowOptions {
     tolerance: f32,
 }
 
+/// Names every method.
+fn shadows_help() -> String {
+    format!("What stands before the engine: {}", Combination::names())
+}
+
 impl ShadowOptions {
     /// The method with its options.
     pub fn plan(&self) -> Plan {
         Plan {
-            method: self.shadows,
+            verdicts: self.shadows.verdicts,
+            budget: None,
+            method: self.shadows.method,
             self_shadow: self.self_shadow,
             retest: self.retest,
             reset_scanlines: self.reset_scanlines,
@@ -193,7 +221,8 @@ pub(super) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(
     write_whole(path, text.as_bytes()).map_err(|reason| Failure::unwritable(path, &reason))
 }
 
-/// To standard output.
+/// Writes to standard output.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
+    use std::io::Write;
     std::io::stdout().write_all(text.as_bytes()).map_err(|_| Failure::NoReader)
 }

@@ -15,7 +15,7 @@ use crate::render::{
     Film, Order, Picture, Progress, Rendered, Settings, Shown, Statistics, render, write_picture,
 };
 use crate::scene::{Dropped, builtin};
-use crate::shadow::prepare;
+use crate::shadow::{Plan, Settled, VerdictReport, prepare};
 
 const DETAILS: &str = "\
 A scene without camera or lights gets sensible ones, and the command says so.
@@ -86,7 +86,8 @@ struct Report<'a> {
     notes: &'a [String],
     backend: &'a str,
     test: &'a str,
-    shadows: &'a str,
+    shadows: String,
+    verdicts: Vec<Verdict>,
     width: u32,
     height: u32,
     samples_per_pixel: u32,
@@ -98,6 +99,15 @@ struct Report<'a> {
     build_seconds: f64,
     render_seconds: f64,
     counts: Statistics,
+}
+
+/// A verdict: what it took, and what it did.
+#[derive(Serialize)]
+struct Verdict {
+    #[serde(flatten)]
+    report: VerdictReport,
+    #[serde(flatten)]
+    settled: Settled,
 }
 
 impl Render {
@@ -139,7 +149,8 @@ impl Render {
         }
         let (backend, build_seconds) = self.engine.build(&scene)?;
         let start = Instant::now();
-        let shadows = prepare(self.shadows.plan(), &scene, &*backend)?;
+        let plan = Plan { budget: self.engine.memory, ..self.shadows.plan() };
+        let shadows = prepare(plan, &scene, &*backend)?;
         let progress = Progress::default();
         let pixels = u64::from(settings.width) * u64::from(settings.height);
         let rendered = with_bar(pixels, &progress, || {
@@ -158,6 +169,19 @@ impl Render {
             }
         }
         let rays = statistics.rays;
+        let verdicts: Vec<Verdict> = shadows
+            .verdicts()
+            .into_iter()
+            .map(|report| Verdict {
+                settled: statistics.shadows.verdicts[report.verdict.index()],
+                report,
+            })
+            .collect();
+        for Verdict { report, .. } in &verdicts {
+            for note in &report.notes {
+                say!("umbra: {}: {note}", report.verdict);
+            }
+        }
         say!(
             "{}: {} triangles, {} lights, {} {} {}; {} rays ({} to lights, {} of them blocked) in {:.2} s: {:.2} million a second; loaded in {:.2} s, built in {:.2} s",
             scene.name,
@@ -185,7 +209,8 @@ impl Render {
             notes: &scene.notes,
             backend: self.engine.backend.name(),
             test: self.engine.test().name(),
-            shadows: self.shadows.shadows.name(),
+            shadows: self.shadows.shadows.to_string(),
+            verdicts,
             width: settings.width,
             height: settings.height,
             samples_per_pixel: settings.samples * settings.samples,

@@ -13,6 +13,7 @@ mod culling_space;
 mod cwbvh;
 #[cfg(feature = "embree")]
 mod embree;
+pub mod embree_bounds;
 mod engine;
 mod grid;
 mod kind;

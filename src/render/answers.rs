@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 use super::Film;
-use super::label::{LINE_HEIGHT, text_width, write_text};
+use super::legend::{UNASKED, from_srgb, with_legend};
 use super::order::Place;
 use crate::shadow::Outcome;
 
@@ -40,26 +40,16 @@ pub struct AnswerMap {
     pixels: Vec<Answered>,
 }
 
-/// Nothing was asked.
-const UNASKED: Vec3 = Vec3::new(0.02, 0.03, 0.1);
-const INK: Vec3 = Vec3::splat(0.8);
-
 /// The colour of an outcome: the palette of Okabe and Ito, which the colour-blind can tell apart.
 fn colour_of(outcome: Outcome) -> Vec3 {
-    let [r, g, b]: [u8; 3] = match outcome {
+    from_srgb(match outcome {
         Outcome::TraversalLit => [240, 228, 66],
         Outcome::TraversalBlocked => [213, 94, 0],
         Outcome::Object => [0, 158, 115],
         Outcome::Voxel => [86, 180, 233],
         Outcome::VerdictLit => [240, 240, 240],
         Outcome::VerdictBlocked => [204, 121, 167],
-    };
-    Vec3::from([r, g, b].map(|value| decode(f32::from(value) / 255.0)))
-}
-
-/// From sRGB to linear.
-fn decode(value: f32) -> f32 {
-    if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+    })
 }
 
 /// Black, blue, red, yellow, white.
@@ -129,32 +119,7 @@ impl AnswerMap {
         self.picture(&entries, |pixel| heat((pixel.cost as f32 / most as f32).sqrt()))
     }
 
-    /// The pixels, and a legend below them: as many lines as the width asks for.
     fn picture(&self, entries: &[(Vec3, String)], colour: impl Fn(&Answered) -> Vec3) -> Film {
-        let (mut x, mut line) = (0, 0);
-        let mut places = Vec::new();
-        for (_, text) in entries {
-            let width = LINE_HEIGHT + text_width(text);
-            if x > 0 && x + width > self.width {
-                (x, line) = (0, line + 1);
-            }
-            places.push((x, self.height + line * LINE_HEIGHT));
-            x += width;
-        }
-        let mut film = Film::new(self.width, self.height + (line + 1) * LINE_HEIGHT);
-        for (place, pixel) in self.pixels.iter().enumerate() {
-            let place = place as u32;
-            film.set((place % self.width, place / self.width), colour(pixel));
-        }
-        for ((colour, text), (x, y)) in entries.iter().zip(places) {
-            let right = self.width.min(x + LINE_HEIGHT - 2);
-            for place in
-                (y + 2..y + LINE_HEIGHT - 1).flat_map(|y| (x + 1..right).map(move |x| (x, y)))
-            {
-                film.set(place, *colour);
-            }
-            write_text(&mut film, (x + LINE_HEIGHT, y), text, INK);
-        }
-        film
+        with_legend((self.width, self.height), entries, |(x, y)| colour(self.at(x, y)))
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::legend::UNASKED;
 use super::order::Place;
 
 /// Linear radiance, a colour a pixel, rows from the top.
@@ -102,7 +103,7 @@ impl ShadowMask {
                     (a + u32::from(seen.asked), b + u32::from(seen.blocked))
                 });
                 let colour = match asked {
-                    0 => Vec3::new(0.02, 0.03, 0.1),
+                    0 => UNASKED,
                     _ => Vec3::splat(1.0 - blocked as f32 / asked as f32),
                 };
                 film.set((x, y), colour);

@@ -8,6 +8,7 @@
 mod answers;
 mod film;
 mod label;
+mod legend;
 mod order;
 mod output;
 mod scanlines;
@@ -18,6 +19,7 @@ mod whitted;
 
 pub use answers::{AnswerMap, Answered, Shown};
 pub use film::{Film, ShadowMask};
+pub use legend::{UNASKED, from_srgb, with_legend};
 pub use order::Order;
 pub use output::{OutputError, Picture, write_picture};
 pub use scanlines::Scanlines;

@@ -1,4 +1,5 @@
-//! Whether a scene of so many triangles fits into memory, asked before it is made.
+//! What memory there is: whether a scene of so many triangles fits, asked before it is made, and how much
+//! of it may be spent on what is prepared for the scene.
 
 use std::fs;
 
@@ -37,15 +38,34 @@ fn within(triangles: u64, available: u64) -> Result<(), String> {
 
 /// Bytes that can be had: what the system has to give, or less where a control group limits it.
 fn available() -> u64 {
-    let free = fs::read_to_string("/proc/meminfo").ok().and_then(|text| {
-        let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-        line.split_whitespace().next()?.parse::<u64>().ok().map(|kibibytes| kibibytes << 10)
-    });
-    let number = |path: &str| fs::read_to_string(path).ok()?.trim().parse::<u64>().ok();
-    let group = number("/sys/fs/cgroup/memory.max")
+    let group = group_limit()
         .map(|limit| limit.saturating_sub(number("/sys/fs/cgroup/memory.current").unwrap_or(0)));
-    let free = free.unwrap_or(UNKNOWN_MEMORY);
+    let free = system("MemAvailable:").unwrap_or(UNKNOWN_MEMORY);
     group.map_or(free, |group| group.min(free))
+}
+
+/// Bytes that prepared structures may take where nothing else is asked for: a quarter of the machine's, or
+/// of what a control group leaves of it.
+#[must_use]
+pub fn default_budget() -> u64 {
+    let all = system("MemTotal:").unwrap_or(UNKNOWN_MEMORY);
+    group_limit().map_or(all, |group| group.min(all)) / 4
+}
+
+/// Bytes that the system gives under this name.
+fn system(name: &str) -> Option<u64> {
+    let text = fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    line.split_whitespace().next()?.parse::<u64>().ok().map(|kibibytes| kibibytes << 10)
+}
+
+/// Bytes that the control group may use, if there is a limit.
+fn group_limit() -> Option<u64> {
+    number("/sys/fs/cgroup/memory.max")
+}
+
+fn number(path: &str) -> Option<u64> {
+    fs::read_to_string(path).ok()?.trim().parse().ok()
 }
 
 #[cfg(test)]

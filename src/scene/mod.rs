@@ -31,6 +31,7 @@ pub use error::SceneError;
 pub use light::{Illumination, Light};
 pub use load::{draft, load};
 pub use material::Material;
+pub use memory::default_budget;
 pub use write::{write, write_glb, write_obj};
 
 use crate::geometry::{Bounds, TriangleId, Triangles};

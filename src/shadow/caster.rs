@@ -1,51 +1,47 @@
-//! Verdict, then memory, then backend: how a query with any of them before the backend is answered.
+//! Verdicts, then memory, then backend: how a query with any of them before the backend is answered.
 
 use super::{
-    Answer, Direct, Inquiry, Memory, Outcome, Plan, Prepared, Retest, SelfShadow, ShadowQuery,
-    ShadowTally, Shadows, Shelf, Sparing, Verdict,
+    Answer, Direct, Inquiry, Memory, Plan, Prepared, Retest, SelfShadow, ShadowQuery, ShadowTally,
+    Shadows, Shelf, Sparing, VerdictReport, Verdicts,
 };
 use crate::occlusion::Occlusion;
 
-/// A verdict, and memories of one kind on a shelf of one kind, before a backend.
-pub struct Cached<'a, V, M: Memory, K> {
+/// Verdicts, and memories of one kind on a shelf of one kind, before a backend.
+pub struct Cached<'a, M: Memory, K> {
     backend: &'a dyn Occlusion,
     opaque: u32,
-    verdict: V,
+    verdicts: Verdicts<'a>,
     /// What a worker starts with.
     shelf: K,
     shared: M::Shared,
     plan: Plan,
 }
 
-impl<'a, V: Verdict, M: Memory, K: Shelf<M>> Cached<'a, V, M, K> {
+impl<'a, M: Memory, K: Shelf<M>> Cached<'a, M, K> {
     /// Every worker starts with copies of `shelf` and `shared`.
     #[must_use]
     pub fn new(
         backend: &'a dyn Occlusion,
         opaque: u32,
-        verdict: V,
+        verdicts: Verdicts<'a>,
         shelf: K,
         shared: M::Shared,
         plan: Plan,
     ) -> Self {
         // Embree's companion grid is built when it is first asked for: now, not by a worker.
         let _ = backend.order();
-        Self { backend, opaque, verdict, shelf, shared, plan }
+        Self { backend, opaque, verdicts, shelf, shared, plan }
     }
 
-    fn caster<I: Inquiry>(&self, inquiry: I) -> Caster<'_, V, M, K, I> {
-        Caster {
-            verdict: &self.verdict,
-            inquiry,
-            shelf: self.shelf.clone(),
-            shared: self.shared.clone(),
-            forgets: self.plan.reset_scanlines,
-            tally: ShadowTally::default(),
-        }
+    fn caster<I: Inquiry>(&self, inquiry: I) -> Caster<'_, M, K, I> {
+        let mut caster = Caster::new(inquiry, self.shelf.clone(), self.shared.clone());
+        caster.verdicts = (!self.verdicts.is_empty()).then_some(&self.verdicts);
+        caster.forgets = self.plan.reset_scanlines;
+        caster
     }
 }
 
-impl<V: Verdict, M: Memory, K: Shelf<M>> Prepared for Cached<'_, V, M, K> {
+impl<M: Memory, K: Shelf<M>> Prepared for Cached<'_, M, K> {
     fn worker(&self) -> Box<dyn Shadows + '_> {
         let direct = Direct::new(self.backend, self.opaque);
         let spawner = self.leaves_out_spawner();
@@ -57,7 +53,11 @@ impl<V: Verdict, M: Memory, K: Shelf<M>> Prepared for Cached<'_, V, M, K> {
     }
 
     fn memory(&self) -> usize {
-        self.verdict.memory()
+        self.verdicts.memory()
+    }
+
+    fn verdicts(&self) -> Vec<VerdictReport> {
+        self.verdicts.reports()
     }
 
     fn leaves_out_spawner(&self) -> bool {
@@ -66,8 +66,11 @@ impl<V: Verdict, M: Memory, K: Shelf<M>> Prepared for Cached<'_, V, M, K> {
 }
 
 /// Answers the queries of one worker.
-pub struct Caster<'a, V, M: Memory, K, I> {
-    verdict: &'a V,
+pub struct Caster<'a, M: Memory, K, I> {
+    /// None if there are none to ask.
+    verdicts: Option<&'a Verdicts<'a>>,
+    /// What they say of the present queries.
+    settled: Vec<Option<bool>>,
     inquiry: I,
     shelf: K,
     shared: M::Shared,
@@ -76,11 +79,19 @@ pub struct Caster<'a, V, M: Memory, K, I> {
     tally: ShadowTally,
 }
 
-impl<'a, V: Verdict, M: Memory, K: Shelf<M>, I: Inquiry> Caster<'a, V, M, K, I> {
-    /// A caster with memories as they are on the shelf.
+impl<M: Memory, K: Shelf<M>, I: Inquiry> Caster<'_, M, K, I> {
+    /// A caster with memories as they are on the shelf, behind no verdict.
     #[must_use]
-    pub fn new(verdict: &'a V, inquiry: I, shelf: K, shared: M::Shared) -> Self {
-        Self { verdict, inquiry, shelf, shared, forgets: false, tally: ShadowTally::default() }
+    pub fn new(inquiry: I, shelf: K, shared: M::Shared) -> Self {
+        Self {
+            verdicts: None,
+            settled: Vec::new(),
+            inquiry,
+            shelf,
+            shared,
+            forgets: false,
+            tally: ShadowTally::default(),
+        }
     }
 
     /// The memories.
@@ -88,14 +99,10 @@ impl<'a, V: Verdict, M: Memory, K: Shelf<M>, I: Inquiry> Caster<'a, V, M, K, I> 
         &mut self.shelf
     }
 
-    /// Answers one query.
+    /// Answers one query that no verdict settles.
     #[inline(always)]
     fn cast(&mut self, light: usize, query: &ShadowQuery) -> Answer {
-        let Self { verdict, inquiry, shelf, shared, tally, .. } = self;
-        if let Some(blocked) = verdict.settle(light, query, &mut tally.backend) {
-            let outcome = if blocked { Outcome::VerdictBlocked } else { Outcome::VerdictLit };
-            return Answer { blocked, outcome };
-        }
+        let Self { inquiry, shelf, shared, tally, .. } = self;
         inquiry.begin(query);
         let memory = shelf.at(light, query.path);
         let invalid_rays = tally.backend.invalid_rays;
@@ -106,18 +113,19 @@ impl<'a, V: Verdict, M: Memory, K: Shelf<M>, I: Inquiry> Caster<'a, V, M, K, I> 
         tally.backend.invalid_rays = invalid_rays;
         let found = inquiry.anywhere(query, &mut tally.backend);
         memory.record(query, shared, found);
-        match found {
-            Some(_) => Answer { blocked: true, outcome: Outcome::TraversalBlocked },
-            None => Answer { blocked: false, outcome: Outcome::TraversalLit },
-        }
+        Answer::traversed(found.is_some())
     }
 }
 
-impl<V: Verdict, M: Memory, K: Shelf<M>, I: Inquiry> Shadows for Caster<'_, V, M, K, I> {
+impl<M: Memory, K: Shelf<M>, I: Inquiry> Shadows for Caster<'_, M, K, I> {
     fn answer(&mut self, light: usize, queries: &[ShadowQuery], answers: &mut [Answer]) {
         assert_eq!(queries.len(), answers.len(), "one answer a query");
-        for (query, answer) in queries.iter().zip(answers) {
-            *answer = self.cast(light, query);
+        if let Some(verdicts) = self.verdicts {
+            verdicts.settle(light, queries, &mut self.settled, &mut self.tally);
+        }
+        for (place, (query, answer)) in queries.iter().zip(answers).enumerate() {
+            let settled = self.verdicts.and_then(|_| self.settled[place]);
+            *answer = settled.map_or_else(|| self.cast(light, query), Answer::settled);
             self.tally.count(answer.blocked, answer.outcome);
         }
     }

@@ -4,7 +4,7 @@
 //! memories (owned by the worker, may only say "blocked", on a triangle's word), then the backend.
 //! For any content of any of them the answer is that of the backend alone, bit for bit.
 //!
-//! A method is a memory on a shelf, which says where memories live:
+//! A method is a memory on a shelf, which says where memories live, behind any verdicts:
 //!
 //! | method | memory | shelf |
 //! | --- | --- | --- |
@@ -15,12 +15,16 @@
 //! | `cache-tree-tolerance` | [`Nearby`]`<LastVoxel>` | [`PerPath`] |
 //! | `woo` | [`LastCell`] | [`PerLight`] |
 
+mod budget;
 mod cache_tree;
 mod caster;
+mod combination;
 mod inquiry;
+mod kind;
 mod memory;
 mod method;
 mod object_cache;
+mod plan;
 mod query;
 mod shelf;
 mod tally;
@@ -31,19 +35,23 @@ mod verdict;
 mod voxel_cache;
 mod woo;
 
+pub use budget::Budget;
 pub use cache_tree::PerPath;
 pub use caster::{Cached, Caster};
+pub use combination::{Combination, CombinationError, VerdictSet};
 pub use inquiry::{Direct, Inquiry, Retest, Sparing};
+pub use kind::VerdictKind;
 pub use memory::{Forgetful, Memory};
-pub use method::{Method, MethodError, Plan, SelfShadow, prepare, prepare_behind};
+pub use method::Method;
 pub use object_cache::LastOccluder;
+pub use plan::{MethodError, Plan, SelfShadow, prepare};
 pub use query::{Answer, Outcome, Path, ShadowQuery};
 pub use shelf::{PerLight, Shelf};
 pub use tally::ShadowTally;
 pub use tolerance::{Nearby, Tolerance};
 pub use trace::Trace;
 pub use transparent::Attenuation;
-pub use verdict::{Undecided, Verdict};
+pub use verdict::{Settled, Verdict, VerdictReport, Verdicts};
 pub use voxel_cache::LastVoxel;
 pub use woo::{Fronts, LastCell};
 
@@ -55,6 +63,11 @@ pub trait Prepared: Send + Sync {
     /// Bytes of what was prepared, the backend apart.
     fn memory(&self) -> usize {
         0
+    }
+
+    /// What each verdict took to prepare, so far.
+    fn verdicts(&self) -> Vec<VerdictReport> {
+        Vec::new()
     }
 
     /// Whether a query's own triangle is left out; its ray then starts on the surface itself.

@@ -116,3 +116,19 @@ pub struct Answer {
     /// How that was found.
     pub outcome: Outcome,
 }
+
+impl Answer {
+    /// The answer of a verdict.
+    #[must_use]
+    pub fn settled(blocked: bool) -> Self {
+        let outcome = if blocked { Outcome::VerdictBlocked } else { Outcome::VerdictLit };
+        Self { blocked, outcome }
+    }
+
+    /// The answer of the backend.
+    #[must_use]
+    pub fn traversed(blocked: bool) -> Self {
+        let outcome = if blocked { Outcome::TraversalBlocked } else { Outcome::TraversalLit };
+        Self { blocked, outcome }
+    }
+}

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Outcome;
+use super::{Outcome, Settled, VerdictKind};
 use crate::occlusion::Tally;
 
 /// Counters of a worker; plain numbers, summed at the end.
@@ -26,6 +26,9 @@ pub struct ShadowTally {
     pub verdict_lit: u64,
     /// Queries that a prepared structure proved blocked.
     pub verdict_blocked: u64,
+    /// What each verdict made of the queries it was asked, in the order of [`VerdictKind::ALL`].
+    #[serde(skip)]
+    pub verdicts: [Settled; VerdictKind::COUNT],
     /// What the backend did, tests of remembered triangles and cells included.
     pub backend: Tally,
 }
@@ -57,6 +60,9 @@ impl std::ops::AddAssign for ShadowTally {
         self.memories += other.memories;
         self.verdict_lit += other.verdict_lit;
         self.verdict_blocked += other.verdict_blocked;
+        for (verdict, other) in self.verdicts.iter_mut().zip(other.verdicts) {
+            *verdict += other;
+        }
         self.backend += other.backend;
     }
 }

@@ -1,86 +1,80 @@
 //! `trace`: no memory; the backend answers every query that no verdict settles. The measure of the
 //! other methods' answers.
 
-use super::{Answer, Outcome, Prepared, ShadowQuery, ShadowTally, Shadows, Undecided, Verdict};
+use super::{Answer, Prepared, ShadowQuery, ShadowTally, Shadows, VerdictReport, Verdicts};
 use crate::geometry::Ray;
 use crate::occlusion::Occlusion;
 
 /// Asks the backend, in batches.
-pub struct Trace<'a, V = Undecided> {
+pub struct Trace<'a> {
     backend: &'a dyn Occlusion,
-    verdict: V,
+    verdicts: Verdicts<'a>,
 }
 
 impl<'a> Trace<'a> {
     /// Nothing to prepare.
     #[must_use]
     pub fn new(backend: &'a dyn Occlusion) -> Self {
-        Self::behind(Undecided, backend)
+        Self::behind(Verdicts::default(), backend)
     }
-}
 
-impl<'a, V: Verdict> Trace<'a, V> {
-    /// Asks the verdict first.
+    /// Asks verdicts first.
     #[must_use]
-    pub fn behind(verdict: V, backend: &'a dyn Occlusion) -> Self {
-        Self { backend, verdict }
+    pub fn behind(verdicts: Verdicts<'a>, backend: &'a dyn Occlusion) -> Self {
+        Self { backend, verdicts }
     }
 }
 
-impl<V: Verdict> Prepared for Trace<'_, V> {
+impl Prepared for Trace<'_> {
     fn worker(&self) -> Box<dyn Shadows + '_> {
         Box::new(Worker {
             backend: self.backend,
-            verdict: &self.verdict,
+            verdicts: &self.verdicts,
+            settled: Vec::new(),
             rays: Vec::new(),
-            places: Vec::new(),
             blocked: Vec::new(),
             tally: ShadowTally::default(),
         })
     }
 
     fn memory(&self) -> usize {
-        self.verdict.memory()
+        self.verdicts.memory()
+    }
+
+    fn verdicts(&self) -> Vec<VerdictReport> {
+        self.verdicts.reports()
     }
 }
 
-struct Worker<'a, V> {
+struct Worker<'a> {
     backend: &'a dyn Occlusion,
-    verdict: &'a V,
-    /// Of queries that the verdict did not settle: the rays, and the places of the answers.
+    verdicts: &'a Verdicts<'a>,
+    /// What the verdicts say of the present queries.
+    settled: Vec<Option<bool>>,
+    /// Rays that they do not settle, and the backend's answers.
     rays: Vec<Ray>,
-    places: Vec<u32>,
     blocked: Vec<bool>,
     tally: ShadowTally,
 }
 
-impl<V: Verdict> Shadows for Worker<'_, V> {
+impl Shadows for Worker<'_> {
     fn answer(&mut self, light: usize, queries: &[ShadowQuery], answers: &mut [Answer]) {
         assert_eq!(queries.len(), answers.len(), "one answer a query");
-        let Self { backend, verdict, rays, places, blocked, tally } = self;
+        let Self { backend, verdicts, settled, rays, blocked, tally } = self;
+        verdicts.settle(light, queries, settled, tally);
+        let unsettled = queries.iter().zip(&*settled).filter(|(_, settled)| settled.is_none());
         rays.clear();
-        places.clear();
-        for (place, query) in queries.iter().enumerate() {
-            match verdict.settle(light, query, &mut tally.backend) {
-                Some(blocked) => {
-                    let outcome =
-                        if blocked { Outcome::VerdictBlocked } else { Outcome::VerdictLit };
-                    answers[place] = Answer { blocked, outcome };
-                    tally.count(blocked, outcome);
-                }
-                None => {
-                    rays.push(query.ray);
-                    places.push(place as u32);
-                }
-            }
-        }
+        rays.extend(unsettled.map(|(query, _)| query.ray));
         blocked.clear();
         blocked.resize(rays.len(), false);
         backend.occluded_many(rays, blocked, &mut tally.backend);
-        for (&blocked, &place) in blocked.iter().zip(&*places) {
-            let outcome = if blocked { Outcome::TraversalBlocked } else { Outcome::TraversalLit };
-            answers[place as usize] = Answer { blocked, outcome };
-            tally.count(blocked, outcome);
+        let mut traced = blocked.iter();
+        for (answer, settled) in answers.iter_mut().zip(&*settled) {
+            *answer = match *settled {
+                Some(blocked) => Answer::settled(blocked),
+                None => Answer::traversed(*traced.next().expect("an answer a ray")),
+            };
+            tally.count(answer.blocked, answer.outcome);
         }
     }
 

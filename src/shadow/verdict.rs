@@ -1,28 +1,152 @@
 //! What settles a query before anything is traversed.
 
-use super::ShadowQuery;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::{ShadowQuery, ShadowTally, VerdictKind};
 use crate::occlusion::Tally;
 
 /// Settles some queries outright, from what was prepared for their light; shared by all workers.
 ///
-/// A verdict must be that of the backend behind it, bit for bit: it may only say what it can prove.
+/// A verdict may only say what it can prove of the ray's bits in exact arithmetic: so before a backend
+/// with the exact test its answers are the backend's, bit for bit, whatever the order of queries and
+/// the number of threads. It passes on rays that are not valid, and rays that do not end at its light.
 pub trait Verdict: Send + Sync {
     /// Whether the query is blocked; `None` where that is not proven. What it costs goes to `tally`.
     fn settle(&self, light: usize, query: &ShadowQuery, tally: &mut Tally) -> Option<bool>;
 
-    /// Bytes of what was prepared.
-    fn memory(&self) -> usize {
-        0
+    /// The same for queries towards one light, as far as they are not settled yet.
+    fn settle_many(
+        &self,
+        light: usize,
+        queries: &[ShadowQuery],
+        settled: &mut [Option<bool>],
+        tally: &mut Tally,
+    ) {
+        for (query, settled) in queries.iter().zip(settled) {
+            if settled.is_none() {
+                *settled = self.settle(light, query, tally);
+            }
+        }
+    }
+
+    /// Bytes of what was prepared so far.
+    fn memory(&self) -> usize;
+
+    /// Seconds spent on what was prepared while queries were answered, over all threads.
+    fn lazy_seconds(&self) -> f64 {
+        0.0
+    }
+
+    /// What the user should know: that it had to be made coarser, or steps aside.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
     }
 }
 
-/// Settles nothing.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Undecided;
+/// What a verdict took to prepare.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VerdictReport {
+    /// Which one.
+    pub verdict: VerdictKind,
+    /// Seconds that preparing took, those while queries were answered included.
+    pub build_seconds: f64,
+    /// Bytes of what was prepared so far.
+    pub bytes: usize,
+    /// What the user should know.
+    pub notes: Vec<String>,
+}
 
-impl Verdict for Undecided {
+/// The queries that one verdict was asked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Settled {
+    /// Proved lit.
+    pub lit: u64,
+    /// Proved blocked.
+    pub blocked: u64,
+    /// Not settled.
+    pub passed_on: u64,
+}
+
+impl std::ops::AddAssign for Settled {
+    fn add_assign(&mut self, other: Self) {
+        self.lit += other.lit;
+        self.blocked += other.blocked;
+        self.passed_on += other.passed_on;
+    }
+}
+
+/// Verdicts that are asked one after the other; often none.
+#[derive(Default)]
+pub struct Verdicts<'a>(Vec<Stacked<'a>>);
+
+struct Stacked<'a> {
+    kind: VerdictKind,
+    verdict: Box<dyn Verdict + 'a>,
+    build_seconds: f64,
+}
+
+impl<'a> Verdicts<'a> {
+    /// Prepares a verdict, to be asked after those before it.
+    pub fn push(&mut self, kind: VerdictKind, prepare: impl FnOnce() -> Box<dyn Verdict + 'a>) {
+        let start = Instant::now();
+        let verdict = prepare();
+        self.0.push(Stacked { kind, verdict, build_seconds: start.elapsed().as_secs_f64() });
+    }
+
+    /// Whether there are none.
+    #[must_use]
     #[inline(always)]
-    fn settle(&self, _: usize, _: &ShadowQuery, _: &mut Tally) -> Option<bool> {
-        None
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Settles what any of them can; a call for each, however many queries.
+    pub fn settle(
+        &self,
+        light: usize,
+        queries: &[ShadowQuery],
+        settled: &mut Vec<Option<bool>>,
+        tally: &mut ShadowTally,
+    ) {
+        settled.clear();
+        settled.resize(queries.len(), None);
+        let mut before = Settled { passed_on: queries.len() as u64, ..Settled::default() };
+        for Stacked { kind, verdict, .. } in &self.0 {
+            verdict.settle_many(light, queries, settled, &mut tally.backend);
+            let mut after = Settled::default();
+            for settled in &*settled {
+                match settled {
+                    Some(false) => after.lit += 1,
+                    Some(true) => after.blocked += 1,
+                    None => after.passed_on += 1,
+                }
+            }
+            tally.verdicts[kind.index()] += Settled {
+                lit: after.lit - before.lit,
+                blocked: after.blocked - before.blocked,
+                passed_on: after.passed_on,
+            };
+            before = after;
+        }
+    }
+
+    /// Bytes of what was prepared so far.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.0.iter().map(|stacked| stacked.verdict.memory()).sum()
+    }
+
+    /// What each took to prepare.
+    #[must_use]
+    pub fn reports(&self) -> Vec<VerdictReport> {
+        let report = |Stacked { kind, verdict, build_seconds }: &Stacked<'_>| VerdictReport {
+            verdict: *kind,
+            build_seconds: build_seconds + verdict.lazy_seconds(),
+            bytes: verdict.memory(),
+            notes: verdict.notes(),
+        };
+        self.0.iter().map(report).collect()
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::{Column, Gain, NODE_BYTES, SceneReport, storage};
+use crate::measure::grouped;
 
 /// Width of the first column, and of the others.
 const NAME: usize = 38;
@@ -68,19 +69,6 @@ fn gain(gain: Gain) -> String {
     format!("{:.2} ±{:.2} %", gain.percent, gain.spread)
 }
 
-/// 1234567 as 1,234,567.
-fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut grouped = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    grouped
-}
-
 /// Table 1 and §10 beside ours.
 #[must_use]
 pub fn storage_table() -> String {
@@ -100,12 +88,6 @@ pub fn storage_table() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn digits_are_grouped_by_three() {
-        let numbers = [0, 7, 999, 1000, 123_456, 1_234_567];
-        assert_eq!(numbers.map(grouped), ["0", "7", "999", "1,000", "123,456", "1,234,567"]);
-    }
 
     #[test]
     fn nodes_take_what_the_paper_says() {

@@ -6,10 +6,8 @@ use std::sync::{Arc, OnceLock};
 use embree_ffi::{BuildQuality, Device, DeviceConfig, Mesh, SceneBuilder, SceneOptions};
 
 use super::{Embree, OPAQUE, TRANSPARENT};
-use crate::geometry::intersect::{AtLeast, FastBox, Moller, Pluecker, RobustBox};
 use crate::geometry::lanes::Arithmetic;
 use crate::geometry::{TriangleId, Triangles};
-use crate::occlusion::{Engine, Grid, Occlusion};
 
 pub use embree_ffi::Isa;
 
@@ -46,7 +44,7 @@ pub struct EmbreeOptions {
     pub quality: Quality,
     /// Kernels to use; the best of this CPU if none are named.
     pub isa: Option<Isa>,
-    /// Packets for [`Occlusion::occluded_many`].
+    /// Packets for [`Occlusion::occluded_many`](crate::occlusion::Occlusion::occluded_many).
     pub width: PacketWidth,
     /// Whether packets are traced as coherent.
     pub coherent: bool,
@@ -54,7 +52,8 @@ pub struct EmbreeOptions {
 
 impl EmbreeOptions {
     /// The arithmetic of the kernels.
-    fn arithmetic(&self) -> Arithmetic {
+    #[must_use]
+    pub fn arithmetic(&self) -> Arithmetic {
         match self.isa {
             None => Arithmetic::of_this_cpu(),
             Some(Isa::Sse2 | Isa::Sse42 | Isa::Avx) => Arithmetic::Sse,
@@ -132,26 +131,4 @@ fn shared_vertices(
         })
         .collect();
     (vertices, indices)
-}
-
-/// The companion grid with the lower bound of Embree's answer as its test.
-pub(super) fn at_least(
-    triangles: &Arc<Triangles>,
-    grid: Arc<Grid>,
-    options: &EmbreeOptions,
-    robust: bool,
-) -> Box<dyn Occlusion> {
-    let triangles = triangles.clone();
-    let arithmetic = options.arithmetic();
-    macro_rules! engine {
-        ($test:ty) => {
-            Box::new(Engine::<_, $test>::new(triangles, grid, Some(arithmetic)))
-        };
-    }
-    match (robust, arithmetic) {
-        (true, _) => engine!(AtLeast<Pluecker, RobustBox>),
-        (false, Arithmetic::Sse) => engine!(AtLeast<Moller, FastBox<false, false>>),
-        (false, Arithmetic::Avx2) => engine!(AtLeast<Moller, FastBox<true, false>>),
-        (false, Arithmetic::Avx512) => engine!(AtLeast<Moller, FastBox<true, true>>),
-    }
 }

@@ -17,6 +17,7 @@ use std::sync::{Arc, OnceLock};
 
 use embree_ffi::{Hit, Ray as EmbreeRay, Scene, Verdict};
 
+use super::embree_bounds::at_least;
 use super::nearest::distance;
 use super::{Cell, Grid, GridOptions, LeftOut, Nearest, Occluder, Occlusion, Tally};
 use crate::geometry::{Ray, TriangleId, Triangles};
@@ -62,7 +63,7 @@ impl Embree {
         self.companion.get_or_init(|| {
             let grid = Arc::new(Grid::new(&self.triangles, GridOptions::default()));
             let at_least =
-                build::at_least(&self.triangles, grid.clone(), &self.options, self.robust);
+                at_least(&self.triangles, grid.clone(), self.robust, self.options.arithmetic());
             Companion { grid, at_least }
         })
     }

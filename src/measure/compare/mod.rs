@@ -1,0 +1,277 @@
+//! The same shadow queries through several contenders, and the truth about each.
+//!
+//! **Truth** is the exact verdict on the query's bits: blocked, clear, or a *tie*, where a triangle is touched at an
+//! end of the interval only. A tie blocks nothing; but Embree promises nothing about ends, so what f32 tests say of
+//! ties is counted apart and is no error.
+//!
+//! **A wrong answer is explained** if it is what the contender claims to compute ([`Claim`]), so that the error is
+//! in the arithmetic that was chosen, and not in the engine:
+//!
+//! | contender | a wrong answer is explained if |
+//! | --- | --- |
+//! | an engine of ours, `exact` | never |
+//! | an engine of ours, another test | that test says the same when asked of every triangle, with no engine |
+//! | `rtcOccluded1` | it lies between L and U, which are computed bit for bit; this is asked of right answers too |
+//! | the same, default mode, high quality | above, L is proven by rounding alone: spatial splits clip the boxes |
+//! | `rtcOccluded4`, `8`, `16` | a forward error bound allows it: "clear" if no triangle and its box are met by more than rounding, "blocked" if some triangle is not missed by more than rounding |
+//!
+//! **The truth itself is checked.** It comes from f64 with a bound and expansions, over the candidates of one culler.
+//! The oracle's big integers give the verdict on every query that any contender got wrong, and on a
+//! sample of the others; brute force checks the culler on as many queries as its time allows.
+//!
+//! A comparison fails if an `exact` answer was wrong, a wrong answer is not explained, or the truth was contradicted.
+
+mod bounds;
+mod listing;
+mod picture;
+mod report;
+mod rounding;
+mod table;
+mod truth;
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use rayon::prelude::*;
+
+pub use bounds::Claim;
+use bounds::{Judge, brute};
+pub use report::{Checks, Disagreement, Kind, Report, Row};
+pub use truth::Truth;
+use truth::Truths;
+
+use super::contender::Contender;
+use super::recording::Recording;
+use crate::exact::Verdict;
+use crate::geometry::Ray;
+use crate::geometry::lanes::Arithmetic;
+use crate::occlusion::{BackendError, Tally, Test};
+use crate::scene::Scene;
+use crate::shadow::MethodError;
+
+/// Queries that go to the oracle besides those that are disputed; each takes it some 100 µs.
+const ORACLE_SAMPLE: usize = 1000;
+
+/// Triangles that brute force may test to check the culler: about a second.
+const BRUTE_TESTS: usize = 1 << 30;
+
+/// Why there is no comparison.
+#[derive(Debug, thiserror::Error)]
+pub enum CompareError {
+    /// One is always right.
+    #[error(
+        "a comparison needs at least two contenders, and these are {0}; name more backends, tests, methods or Embree variants"
+    )]
+    Few(usize),
+    /// No light faces anything that the camera sees.
+    #[error(
+        "{0}: no shadow query is asked in this picture; give the scene another camera or light"
+    )]
+    NoQueries(String),
+    /// An engine cannot be used.
+    #[error("{contender}: {error}")]
+    Backend {
+        /// Whose.
+        contender: String,
+        /// Why.
+        error: BackendError,
+    },
+    /// A method cannot be used.
+    #[error("{contender}: {error}")]
+    Method {
+        /// Whose.
+        contender: String,
+        /// Why.
+        error: MethodError,
+    },
+}
+
+/// Has all contenders answer the queries of a recording; `answered` counts queries, for whoever shows progress.
+///
+/// Engines are built one after the other and dropped, so memory holds the scene, one engine, one culler and
+/// some 20 bytes a query.
+///
+/// # Errors
+/// If there is nothing to compare, or a contender cannot be built.
+pub fn compare(
+    scene: &Scene,
+    recording: &Recording,
+    contenders: &[Contender],
+    answered: &AtomicU64,
+) -> Result<Report, CompareError> {
+    if contenders.len() < 2 {
+        return Err(CompareError::Few(contenders.len()));
+    }
+    if recording.queries().is_empty() {
+        return Err(CompareError::NoQueries(scene.name.clone()));
+    }
+    let mut comparison = Comparison::new(scene, recording);
+    let mut last = None;
+    for contender in contenders {
+        let engine = match last.take() {
+            Some((built, engine)) if contender.shares_engine(built) => engine,
+            _ => contender.build(&scene.triangles).map_err(|error| CompareError::Backend {
+                contender: contender.to_string(),
+                error,
+            })?,
+        };
+        let method = contender
+            .prepare(scene, &*engine)
+            .map_err(|error| CompareError::Method { contender: contender.to_string(), error })?;
+        let answers = recording.answers(&*method);
+        drop(method);
+        comparison.enter(&contender.to_string(), Claim::of(contender), &answers);
+        answered.fetch_add(answers.len() as u64, Relaxed);
+        last = Some((contender, engine));
+    }
+    Ok(comparison.finish())
+}
+
+/// A comparison under way: the truth, and what each contender that entered made of it.
+pub struct Comparison<'a> {
+    scene: &'a Scene,
+    recording: &'a Recording,
+    truths: Truths,
+    /// By query.
+    truth: Vec<Truth>,
+    rows: Vec<Row>,
+    disagreements: Vec<Disagreement>,
+}
+
+impl<'a> Comparison<'a> {
+    /// Finds the truth about every query, on all threads of the current pool.
+    #[must_use]
+    pub fn new(scene: &'a Scene, recording: &'a Recording) -> Self {
+        let truths = Truths::new(scene.triangles.clone());
+        let queries = recording.queries().par_iter();
+        let truth = queries.map(|recorded| truths.certified(&recorded.query.ray)).collect();
+        Self { scene, recording, truths, truth, rows: Vec::new(), disagreements: Vec::new() }
+    }
+
+    /// Enters the answers of a contender: for each query, whether it is blocked.
+    ///
+    /// # Panics
+    /// If there is not one answer a query.
+    pub fn enter(&mut self, name: &str, claim: Claim, answers: &[bool]) {
+        assert_eq!(answers.len(), self.truth.len(), "one answer a query");
+        let judge = Judge::new(claim, &self.truths);
+        let contender = self.rows.len();
+        let found: Vec<Disagreement> = answers
+            .par_iter()
+            .enumerate()
+            .filter_map(|(query, &blocked)| self.examine(&judge, contender, query, blocked))
+            .collect();
+        let ties = self.truth.iter().zip(answers);
+        let ties_blocked =
+            ties.filter(|(truth, blocked)| truth.verdict == Verdict::Tie && **blocked).count();
+        self.rows.push(Row::new(name, claim, &self.totals(), ties_blocked as u64, &found));
+        self.disagreements.extend(found);
+    }
+
+    /// Looks at one answer; finds nothing if it is right, or about a tie, and not beyond its bounds.
+    fn examine(
+        &self,
+        judge: &Judge,
+        contender: usize,
+        query: usize,
+        blocked: bool,
+    ) -> Option<Disagreement> {
+        let truth = self.truth[query];
+        let is_right = blocked == truth.is_blocked();
+        if is_right && !judge.judges_all() {
+            return None;
+        }
+        let ray = self.ray(query);
+        let is_free = truth.verdict == Verdict::Tie && !judge.is_exact();
+        if is_free && !judge.judges_all() {
+            return None;
+        }
+        let ruling = judge.rule(ray, blocked);
+        let kind = match (is_right || is_free, blocked) {
+            (true, _) if ruling.within => return None,
+            (true, _) => Kind::OutOfBounds,
+            (false, true) => Kind::FalseBlocked,
+            (false, false) => Kind::FalseClear,
+        };
+        let recorded = &self.recording.queries()[query];
+        Some(Disagreement {
+            contender,
+            query,
+            pixel: recorded.pixel,
+            light: recorded.light,
+            ray: *ray,
+            kind,
+            blocked,
+            exact: truth.verdict,
+            triangle: truth.triangle.or(ruling.witness),
+            explained: ruling.within,
+        })
+    }
+
+    fn ray(&self, query: usize) -> &'a Ray {
+        &self.recording.queries()[query].query.ray
+    }
+
+    /// Queries by verdict: blocked, clear, ties.
+    fn totals(&self) -> [u64; 3] {
+        let count = |verdict| self.truth.iter().filter(|t| t.verdict == verdict).count() as u64;
+        [Verdict::Blocked, Verdict::Clear, Verdict::Tie].map(count)
+    }
+
+    /// Checks the truth, and gives the report.
+    #[must_use]
+    pub fn finish(mut self) -> Report {
+        let mut disputed: Vec<usize> = self.disagreements.iter().map(|found| found.query).collect();
+        disputed.sort_unstable();
+        disputed.dedup();
+        let (verdicts, checks) = self.check(&disputed);
+        for found in &mut self.disagreements {
+            found.exact = verdicts[&found.query].verdict;
+        }
+        let [blocked, clear, ties] = self.totals();
+        Report {
+            scene: self.scene.name.clone(),
+            triangles: self.scene.triangles.len(),
+            lights: self.scene.lights.len(),
+            width: self.recording.width,
+            height: self.recording.height,
+            queries: self.truth.len() as u64,
+            blocked,
+            clear,
+            ties,
+            contenders: self.rows,
+            checks,
+            disagreements: self.disagreements,
+        }
+    }
+
+    /// Puts the disputed queries, and a sample, to the oracle and to brute force.
+    fn check(&self, disputed: &[usize]) -> (BTreeMap<usize, Truth>, Checks) {
+        let all = self.truth.len();
+        let sample = (0..all).step_by(all.div_ceil(ORACLE_SAMPLE).max(1));
+        let asked: Vec<usize> = disputed.iter().copied().chain(sample).collect();
+        let verdicts: BTreeMap<usize, Truth> = asked
+            .into_par_iter()
+            .map(|query| (query, self.truths.oracle(self.ray(query))))
+            .collect();
+        let oracle_contradicts =
+            verdicts.iter().filter(|(query, oracle)| oracle.verdict != self.truth[**query].verdict);
+        let by_oracle = verdicts.len() as u64;
+        let mut contradicted = oracle_contradicts.count() as u64;
+
+        let triangles = &self.scene.triangles;
+        let affordable = (BRUTE_TESTS / triangles.len()).clamp(1, all);
+        let engine = brute(Test::Exact, Arithmetic::of_this_cpu(), triangles);
+        let spread = (0..affordable).map(|place| place * all / affordable);
+        let asked: Vec<usize> =
+            disputed.iter().copied().take(affordable).chain(spread).take(affordable).collect();
+        contradicted += asked
+            .par_iter()
+            .filter(|query| {
+                let blocked = engine.occluded(self.ray(**query), &mut Tally::default());
+                blocked != self.truth[**query].is_blocked()
+            })
+            .count() as u64;
+        (verdicts, Checks { by_oracle, by_brute_force: asked.len() as u64, contradicted })
+    }
+}

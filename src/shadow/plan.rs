@@ -1,0 +1,154 @@
+//! A shadow method with its options, made ready for a scene and a backend.
+
+use std::sync::Arc;
+
+use clap::ValueEnum;
+
+use super::{
+    Budget, Cached, Combination, Forgetful, LastCell, LastOccluder, LastVoxel, Memory, Method,
+    Nearby, PerLight, PerPath, Prepared, Retest, Shelf, Tolerance, Trace, VerdictSet, Verdicts,
+    cache_tree, woo,
+};
+use crate::occlusion::Occlusion;
+use crate::scene::{Scene, default_budget};
+
+/// What keeps a shadow ray from meeting the triangle that it starts on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum)]
+pub enum SelfShadow {
+    /// The ray starts a little off the surface.
+    #[default]
+    Offset,
+    /// The triangle is left out (§9 of the paper); neighbours that the ray also starts on are not.
+    Exclude,
+}
+
+/// What stands before a backend, with its options.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// The verdicts that are asked first.
+    pub verdicts: VerdictSet,
+    /// Bytes that they may take together with the backend; [`default_budget`] if not given.
+    pub budget: Option<u64>,
+    /// The memory that is asked next.
+    pub method: Method,
+    /// How a ray keeps clear of its own triangle.
+    pub self_shadow: SelfShadow,
+    /// Whether a traversal tests again what the memory tested.
+    pub retest: Retest,
+    /// Whether memories are forgotten at the beginning of each scanline (§8 of the paper).
+    pub reset_scanlines: bool,
+    /// Bounces down to which a cache tree has nodes.
+    pub tree_depth: u8,
+    /// For the tolerance check: how far apart points may be in units of the scene's diagonal, and
+    /// directions in units of half a turn.
+    pub tolerance: f32,
+}
+
+impl Plan {
+    /// Its verdicts and memory.
+    #[must_use]
+    pub fn combination(&self) -> Combination {
+        Combination { verdicts: self.verdicts, method: self.method }
+    }
+}
+
+impl<C: Into<Combination>> From<C> for Plan {
+    /// Verdicts and memory with the options that are best on the whole.
+    fn from(combination: C) -> Self {
+        let Combination { verdicts, method } = combination.into();
+        Self {
+            verdicts,
+            budget: None,
+            method,
+            self_shadow: SelfShadow::default(),
+            retest: Retest::default(),
+            reset_scanlines: false,
+            tree_depth: cache_tree::DEPTH,
+            tolerance: 0.05,
+        }
+    }
+}
+
+/// Why a method cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MethodError {
+    /// Not a share.
+    #[error(
+        "tolerance {0}: give a number from 0 (none) to 0.5 (any direction that is not opposite)"
+    )]
+    Tolerance(f32),
+    /// Verdicts are proofs about all triangles.
+    #[error(
+        "{0} counts the triangle that a ray starts on like any other, so it cannot be left out: use --self-shadow offset, or no verdict"
+    )]
+    LeavesOut(Combination),
+}
+
+/// Makes a method ready for a scene and a backend over its triangles.
+///
+/// # Errors
+/// If method and scene or backend do not go together.
+pub fn prepare<'a>(
+    plan: impl Into<Plan>,
+    scene: &Scene,
+    backend: &'a dyn Occlusion,
+) -> Result<Box<dyn Prepared + 'a>, MethodError> {
+    let plan = plan.into();
+    if !(0.0..=0.5).contains(&plan.tolerance) {
+        return Err(MethodError::Tolerance(plan.tolerance));
+    }
+    if plan.self_shadow == SelfShadow::Exclude && !plan.verdicts.is_empty() {
+        return Err(MethodError::LeavesOut(plan.combination()));
+    }
+    let bounds = scene.bounds();
+    let diagonal = bounds.min.distance(bounds.max);
+    let tolerance = Tolerance::new(plan.tolerance * diagonal, plan.tolerance);
+    let verdicts = prepare_verdicts(&plan, scene, backend);
+    let table = Table { verdicts, backend, opaque: scene.triangles.opaque_count(), plan };
+    Ok(match plan.method {
+        Method::Trace if plan.self_shadow == SelfShadow::Offset => {
+            Box::new(Trace::behind(table.verdicts, backend))
+        }
+        Method::Trace => table.memory(PerLight::<Forgetful>::default(), ()),
+        Method::ObjectCache => table.memory(PerLight::<LastOccluder>::default(), ()),
+        Method::VoxelCache => table.memory(PerLight::<LastVoxel>::default(), ()),
+        Method::CacheTree => table.memory(PerPath::<LastVoxel>::new(plan.tree_depth), ()),
+        Method::CacheTreeTolerance => {
+            table.memory(PerPath::<Nearby<LastVoxel>>::new(plan.tree_depth), (tolerance, ()))
+        }
+        Method::Woo => table.memory(PerLight::<LastCell>::default(), woo::Fronts::default()),
+    })
+}
+
+/// The verdicts share what memory the backend leaves of the budget.
+fn prepare_verdicts<'a>(plan: &Plan, scene: &Scene, backend: &'a dyn Occlusion) -> Verdicts<'a> {
+    let mut verdicts = Verdicts::default();
+    if !plan.verdicts.is_empty() {
+        let limit = plan.budget.unwrap_or_else(default_budget);
+        let budget = Arc::new(Budget::new(limit.saturating_sub(backend.memory() as u64)));
+        for kind in plan.verdicts.iter() {
+            verdicts.push(kind, || kind.prepare(scene, backend, &budget));
+        }
+    }
+    verdicts
+}
+
+/// What all memories are put behind and before.
+struct Table<'a> {
+    verdicts: Verdicts<'a>,
+    backend: &'a dyn Occlusion,
+    opaque: u32,
+    plan: Plan,
+}
+
+impl<'a> Table<'a> {
+    fn memory<M, K>(self, shelf: K, shared: M::Shared) -> Box<dyn Prepared + 'a>
+    where
+        M: Memory + 'a,
+        K: Shelf<M> + 'a,
+        M::Shared: 'a,
+    {
+        let Self { verdicts, backend, opaque, plan } = self;
+        Box::new(Cached::<M, K>::new(backend, opaque, verdicts, shelf, shared, plan))
+    }
+}
