@@ -18,7 +18,7 @@ use umbra::measure::recording::Recording;
 use umbra::occlusion::{Backend, Test};
 use umbra::render::{Progress, RecordedQuery, Settings};
 use umbra::scene::{Scene, builtin};
-use umbra::shadow::{Method, Path as RayPath, ShadowQuery};
+use umbra::shadow::{Path as RayPath, ShadowQuery};
 
 /// A scene of these triangles, where they are.
 fn scene_of(mesh: &[Triangle]) -> Scene {
@@ -84,14 +84,14 @@ fn claims() -> Vec<Claim> {
 #[test]
 fn exact_engines_with_every_method_never_disagree_on_the_builtin_scenes() {
     let choice =
-        Choice { tests: vec![Test::Exact], methods: Method::ALL.to_vec(), ..Choice::default() };
+        Choice { tests: vec![Test::Exact], methods: Choice::every_method(), ..Choice::default() };
     for name in builtin::NAMES {
         let scene = builtin::draft_at(name, 0.1).unwrap().finish().unwrap();
         let recording = recorded(&scene);
         let report = compared(&scene, &recording, &choice);
         assert!(report.disagreements.is_empty(), "{name}");
         assert_eq!(report.failure(), None, "{name}");
-        assert_eq!(report.contenders.len(), 3 * Method::ALL.len());
+        assert_eq!(report.contenders.len(), 3 * choice.methods.len());
         assert!(report.checks.by_oracle > 0 && report.checks.by_brute_force > 0);
         assert!(report.blocked > 0 && report.clear > 0, "{name}: there is something to compare");
     }
@@ -308,6 +308,16 @@ fn rays_that_are_none_are_clear_to_everybody() {
     assert_eq!((report.clear, report.disagreements.len(), report.failure()), (2, 0, None));
 }
 
+#[test]
+fn pictures_whose_queries_do_not_fit_are_refused() {
+    let (scene, _) = ties();
+    let settings =
+        |width, samples| Settings { width, height: width, samples, ..Settings::default() };
+    assert!(Recording::check(&scene, &settings(160, 1)).is_ok());
+    let error = Recording::check(&scene, &settings(16_000, 64)).unwrap_err().to_string();
+    assert!(error.contains("GiB; give a smaller size"), "{error}");
+}
+
 /// A folder with a scene of two triangles, one above the other, and without camera or light.
 fn workplace() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -385,6 +395,10 @@ fn bad_input_is_told_in_one_line() {
     compare_refused("--backends grid,teapot", &["'teapot'", "grid, embree, bvh2, cwbvh, brute"]);
     compare_refused("--tests exact,teapot", &["'teapot'", "moller, pluecker, watertight, exact"]);
     compare_refused("--methods teapot", &["'teapot'", "voxel-cache"]);
+    compare_refused(
+        "--methods trace,object-cache+woo",
+        &["object-cache and woo are both memories"],
+    );
     compare_refused("--size 0x3", &["size 0x3"]);
     compare_refused("--threads 0", &["--threads 0"]);
     compare_refused("--difference roof.gif", &["roof.gif", ".png or .exr"]);

@@ -14,7 +14,7 @@ use crate::measure::contender::{Choice, Selection};
 use crate::measure::recording::Recording;
 use crate::occlusion::{Backend, Test};
 use crate::render::{Picture, Progress, Settings, write_picture};
-use crate::shadow::Method;
+use crate::shadow::Combination;
 use crate::whole_file::write_whole;
 
 const DETAILS: &str = "\
@@ -50,9 +50,9 @@ pub(super) struct Compare {
     /// The triangle tests; all if not given
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     tests: Vec<Test>,
-    /// The methods that stand before the engines; trace if not given
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    methods: Vec<Method>,
+    /// The methods that stand before the engines, as --shadows of render has them; trace if not given
+    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    methods: Vec<Combination>,
     /// The ways to use Embree: names like avx2-high-8-coherent, `default`, or `all`
     #[cfg(feature = "embree")]
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
@@ -118,6 +118,7 @@ impl Compare {
         let pool = pool(self.threads)?;
 
         let scene = load_scene(&self.scene)?;
+        Recording::check(&scene, &settings)?;
         for reason in &left_out {
             say!("umbra: left out: {reason}");
         }

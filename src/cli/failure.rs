@@ -91,4 +91,5 @@ input!(
     crate::render::OutputError,
     crate::measure::compare::CompareError,
     crate::measure::paper::PaperError,
+    crate::measure::recording::TooManyQueries,
 );

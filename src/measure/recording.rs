@@ -8,7 +8,7 @@ use crate::exact::Exact;
 use crate::geometry::Ray;
 use crate::occlusion::{Bvh2, Engine, Occlusion};
 use crate::render::{Progress, RecordedQuery, Settings, SettingsError, render};
-use crate::scene::Scene;
+use crate::scene::{Scene, default_budget};
 use crate::shadow::{Answer, Prepared, ShadowQuery, Trace};
 
 /// Queries that one worker answers with the same memories; a tile with one light asks 256.
@@ -28,7 +28,40 @@ pub struct Recording {
     blocks: Vec<Range<usize>>,
 }
 
+/// Why a picture's queries are not recorded.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "a picture of {pixels} pixels with {samples} samples each and {lights} lights may ask {queries} shadow queries or more, which take {needed:.1} GiB; give a smaller size or fewer samples"
+)]
+pub struct TooManyQueries {
+    pixels: u64,
+    samples: u64,
+    lights: u64,
+    queries: u64,
+    needed: f64,
+}
+
 impl Recording {
+    /// Whether the queries of such a picture may be expected to fit into memory: those of primary hits into a
+    /// quarter of it.
+    ///
+    /// # Errors
+    /// If they may not.
+    pub fn check(scene: &Scene, settings: &Settings) -> Result<(), TooManyQueries> {
+        // While a picture is put together, its units' queries are there twice.
+        const BYTES: u64 = 2 * size_of::<RecordedQuery>() as u64;
+        let pixels = u64::from(settings.width) * u64::from(settings.height);
+        let samples = u64::from(settings.samples) * u64::from(settings.samples);
+        let lights = scene.lights.len() as u64;
+        let queries = pixels.saturating_mul(samples).saturating_mul(lights);
+        let needed = queries.saturating_mul(BYTES);
+        if needed <= default_budget() {
+            return Ok(());
+        }
+        let needed = needed as f64 / f64::from(1 << 30);
+        Err(TooManyQueries { pixels, samples, lights, queries, needed })
+    }
+
     /// Renders the picture by the exact test, and keeps what was asked.
     ///
     /// # Errors

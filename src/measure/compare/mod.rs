@@ -88,8 +88,8 @@ pub enum CompareError {
 
 /// Has all contenders answer the queries of a recording; `answered` counts queries, for whoever shows progress.
 ///
-/// Engines are built one after the other and dropped, so memory holds the scene, one engine, one culler and
-/// some 20 bytes a query.
+/// Engines are built one after the other and dropped, so memory holds the scene, one engine, one culler, and the
+/// queries with their verdicts.
 ///
 /// # Errors
 /// If there is nothing to compare, or a contender cannot be built.
@@ -108,13 +108,9 @@ pub fn compare(
     let mut comparison = Comparison::new(scene, recording);
     let mut last = None;
     for contender in contenders {
-        let engine = match last.take() {
-            Some((built, engine)) if contender.shares_engine(built) => engine,
-            _ => contender.build(&scene.triangles).map_err(|error| CompareError::Backend {
-                contender: contender.to_string(),
-                error,
-            })?,
-        };
+        let engine = contender
+            .build_after(last.take(), &scene.triangles)
+            .map_err(|error| CompareError::Backend { contender: contender.to_string(), error })?;
         let method = contender
             .prepare(scene, &*engine)
             .map_err(|error| CompareError::Method { contender: contender.to_string(), error })?;

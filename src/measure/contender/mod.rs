@@ -4,6 +4,8 @@
 #[cfg(feature = "embree")]
 mod embree_variant;
 
+#[cfg(feature = "embree")]
+use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
@@ -12,8 +14,10 @@ pub use embree_variant::{EmbreeVariant, VariantError};
 
 use crate::geometry::Triangles;
 use crate::occlusion::{Backend, BackendError, BuildOptions, Occlusion, Test, build};
+#[cfg(feature = "embree")]
+use crate::occlusion::{Embree, EmbreeOptions};
 use crate::scene::Scene;
-use crate::shadow::{Method, MethodError, Prepared, prepare};
+use crate::shadow::{Combination, Method, MethodError, Prepared, VerdictKind, prepare};
 
 /// One way to answer shadow queries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +26,8 @@ pub struct Contender {
     pub backend: Backend,
     /// Its triangle test.
     pub test: Test,
-    /// What stands before it.
-    pub method: Method,
+    /// What stands before it: verdicts and a memory.
+    pub method: Combination,
     /// How it is built and used: the grid's resolution, the arithmetic, Embree's variant.
     pub options: BuildOptions,
 }
@@ -32,7 +36,7 @@ impl Contender {
     /// The engine by itself, as it is built by default.
     #[must_use]
     pub fn new(backend: Backend, test: Test) -> Self {
-        Self { backend, test, method: Method::Trace, options: BuildOptions::default() }
+        Self { backend, test, method: Combination::default(), options: BuildOptions::default() }
     }
 
     /// Builds the engine.
@@ -58,10 +62,36 @@ impl Contender {
         prepare(self.method, scene, engine)
     }
 
-    /// Whether the other has the same engine, so that it need not be built again.
-    #[must_use]
-    pub fn shares_engine(&self, other: &Self) -> bool {
-        Self { method: other.method, ..*self } == *other
+    /// Builds the engine, or uses that of the contender before where it is the same, or the same scene in Embree.
+    ///
+    /// # Errors
+    /// If it is not to be had here.
+    ///
+    /// # Panics
+    /// Without triangles.
+    pub fn build_after(
+        &self,
+        last: Option<(&Self, Box<dyn Occlusion>)>,
+        triangles: &Arc<Triangles>,
+    ) -> Result<Box<dyn Occlusion>, BackendError> {
+        let Some((other, engine)) = last else { return self.build(triangles) };
+        let adapted = Self { method: self.method, ..*other };
+        if adapted == *self {
+            return Ok(engine);
+        }
+        #[cfg(feature = "embree")]
+        {
+            let EmbreeOptions { width, coherent, .. } = self.options.embree;
+            let mut adapted = adapted;
+            (adapted.options.embree.width, adapted.options.embree.coherent) = (width, coherent);
+            let engine = (&*engine as &dyn Any).downcast_ref::<Embree>();
+            if let Some(embree) = engine.filter(|_| adapted == *self) {
+                return Ok(Box::new(embree.with_packets(width, coherent)?));
+            }
+        }
+        // Gone before the next comes: memory holds one at a time.
+        drop(engine);
+        self.build(triangles)
     }
 
     /// Whether it asks Embree many rays at once.
@@ -83,7 +113,7 @@ impl fmt::Display for Contender {
         if self.backend == Backend::Embree && self.options.embree != Default::default() {
             write!(f, " {}", EmbreeVariant(self.options.embree))?;
         }
-        if self.method != Method::Trace {
+        if self.method != Combination::default() {
             write!(f, " {}", self.method)?;
         }
         Ok(())
@@ -99,7 +129,7 @@ pub struct Choice {
     /// The tests; all if none is named.
     pub tests: Vec<Test>,
     /// The methods; `trace` if none is named.
-    pub methods: Vec<Method>,
+    pub methods: Vec<Combination>,
     /// The ways to use Embree; its default if none is named.
     #[cfg(feature = "embree")]
     pub embree: Vec<EmbreeVariant>,
@@ -117,11 +147,18 @@ pub struct Selection {
 }
 
 impl Choice {
+    /// Every memory and every verdict by itself.
+    #[must_use]
+    pub fn every_method() -> Vec<Combination> {
+        let memories = Method::ALL.into_iter().map(Combination::from);
+        memories.chain(VerdictKind::ALL.into_iter().map(Combination::from)).collect()
+    }
+
     /// Every backend but brute force, test, method and use of Embree that this CPU has.
     #[must_use]
     pub fn everything() -> Self {
         Self {
-            methods: Method::ALL.to_vec(),
+            methods: Self::every_method(),
             #[cfg(feature = "embree")]
             embree: EmbreeVariant::all(),
             ..Self::default()
@@ -141,7 +178,7 @@ impl Choice {
     #[must_use]
     pub fn select(&self) -> Selection {
         let tests = or_all(&self.tests, || Test::ALL.to_vec());
-        let methods = or_all(&self.methods, || vec![Method::Trace]);
+        let methods = or_all(&self.methods, || vec![Combination::default()]);
         let mut selection = Selection::default();
         for backend in self.backends() {
             for &test in &tests {
@@ -180,7 +217,7 @@ impl Choice {
 
 impl Selection {
     fn add(&mut self, contender: Contender) {
-        if contender.is_packet() && contender.method != Method::Trace {
+        if contender.is_packet() && contender.method.method != Method::Trace {
             // Memories ask one ray at a time: it would be the contender of width 1 under another name.
             self.left_out.push(format!("{contender}: methods with memories ask no packets"));
         } else if !self.contenders.contains(&contender) {
@@ -231,7 +268,7 @@ mod tests {
         let choice = Choice {
             backends: vec![Backend::Embree],
             tests: vec![Test::Pluecker],
-            methods: vec![Method::Trace, Method::VoxelCache],
+            methods: vec![Method::Trace.into(), Method::VoxelCache.into()],
             embree: vec!["default".parse().unwrap(), "4".parse().unwrap()],
             ..Choice::default()
         };

@@ -99,11 +99,16 @@ impl Embree {
         check_width(&scene, options.width)?;
         // What Embree reports includes the copies of vertices and indices; its structure is the rest.
         let bytes = device.memory_used().saturating_sub(copied);
-        Ok(Self { triangles, scene, firsts, options, robust, bytes, companion: OnceLock::new() })
+        let (scene, companion) = (Arc::new(scene), Arc::new(OnceLock::new()));
+        Ok(Self { triangles, scene, firsts, options, robust, bytes, companion })
     }
 }
 
-fn check_width(scene: &embree_ffi::Scene, width: PacketWidth) -> Result<(), embree_ffi::Error> {
+/// Whether the scene's kernels have packets of that width.
+pub(super) fn check_width(
+    scene: &embree_ffi::Scene,
+    width: PacketWidth,
+) -> Result<(), embree_ffi::Error> {
     let coherence = embree_ffi::Coherence::default();
     match width {
         PacketWidth::One => Ok(()),

@@ -32,13 +32,13 @@ const TRANSPARENT: NonZeroU32 = NonZeroU32::new(2).unwrap();
 /// A scene in Embree.
 pub struct Embree {
     triangles: Arc<Triangles>,
-    scene: Scene,
+    scene: Arc<Scene>,
     /// First triangle of each geometry.
     firsts: Vec<TriangleId>,
     options: EmbreeOptions,
     robust: bool,
     bytes: usize,
-    companion: OnceLock<Companion>,
+    companion: Arc<OnceLock<Companion>>,
 }
 
 /// The grid whose voxels stand in for Embree's leaves.
@@ -49,6 +49,22 @@ struct Companion {
 }
 
 impl Embree {
+    /// The same scene, asked in packets of another width.
+    ///
+    /// # Errors
+    /// If the kernels have no packets of that width.
+    pub fn with_packets(
+        &self,
+        width: PacketWidth,
+        coherent: bool,
+    ) -> Result<Self, embree_ffi::Error> {
+        build::check_width(&self.scene, width)?;
+        let (triangles, scene) = (self.triangles.clone(), self.scene.clone());
+        let (firsts, companion) = (self.firsts.clone(), self.companion.clone());
+        let options = EmbreeOptions { width, coherent, ..self.options };
+        Ok(Self { triangles, scene, firsts, options, companion, ..*self })
+    }
+
     fn ray(ray: &Ray, mask: NonZeroU32) -> EmbreeRay {
         EmbreeRay::new(ray.origin.to_array(), ray.direction.to_array())
             .with_interval(0.0, ray.end)
