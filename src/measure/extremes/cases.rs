@@ -21,6 +21,9 @@ const MILLION: usize = 1_000_000;
 /// Meshes with a million triangles are shot at with one ray in so many: brute force looks at all of them.
 const FEWER: usize = 50;
 
+/// From where nothing can be culled and expansions decide about every triangle, one ray in so many comes.
+const FEWER_FAR: usize = 10;
+
 /// A mesh and rays.
 pub struct Situation {
     /// The mesh.
@@ -179,12 +182,16 @@ fn places(cases: &mut Vec<Case>) {
         ));
     }
     for (name, sizes) in [("1e3", 1e3), ("1e6", 1e6), ("1e12", 1e12), ("1e30", 1e30)] {
-        cases.push(Case::shots(
+        let fewer = if sizes > 1e9 { FEWER_FAR } else { 1 };
+        cases.push(Case::new(
             format!("origin-{name}-away"),
             format!("rays from {name} times the scene's size away"),
-            plain,
-            move |range, random| {
-                through(sizes * random.point().normalize(), range.target(random), random)
+            move |random, count| {
+                let triangles = plain(random);
+                let rays = shoot(&triangles, random, count.div_ceil(fewer), |range, random| {
+                    through(sizes * random.point().normalize(), range.target(random), random)
+                });
+                Situation { triangles, rays }
             },
         ));
     }
