@@ -61,7 +61,7 @@ fn scenes_that_are_directories() {
         fs::create_dir(folder.path().join(name)).unwrap();
         for command in COMMANDS {
             let line = command.replace("SCENE", name);
-            refused(folder.path(), &line, &[&format!("cannot read {name}:"), "irectory"]);
+            refused(folder.path(), &line, &[&format!("cannot read {name}: this is a directory")]);
         }
     }
 }
@@ -78,6 +78,8 @@ fn scenes_that_are_damaged() {
         Some(b"PNG and more bytes than a header has"),
         &["magic.glb", "glTF"],
     );
+    scene_refused("glb.obj", Some(&glb(5000)), &["glb.obj", "a GLB"]);
+    scene_refused("binary.obj", Some(b"v 0 0 0\n\0"), &["binary.obj", "byte 8 is 0"]);
     scene_refused("scene.fbx", Some(b"Kaydara"), &["scene.fbx", ".obj, .glb, .gltf and .toml"]);
     scene_refused("bad.obj", Some(b"v 0 0 0\nv 1 x 0\n"), &["bad.obj", "line 2"]);
     scene_refused("bad.toml", Some(b"up = [0, 1, 0]\nmesh = 3\n"), &["bad.toml", "line 2"]);
@@ -113,8 +115,14 @@ fn sizes_samples_and_depths() {
     render_refused("--depth 200", &["depth 200"]);
     render_refused("--exposure 0", &["--exposure", "above 0"]);
     render_refused("--exposure nan", &["--exposure", "above 0"]);
-    render_refused("--threads 0", &["--threads 0", "at least 1"]);
+    for threads in ["0", "1025", "100000000"] {
+        render_refused(&format!("--threads {threads}"), &["--threads", threads, "1 to 1024"]);
+    }
     render_refused("--grid 0,1,1", &["--grid", "1 to 1024"]);
+    render_refused("--grid 1024,1024,1024", &["--grid", "1073741824 voxels are too many"]);
+    render_refused("--tree-depth 32", &["tree depth 32", "31"]);
+    let line = "paper --quick --scene drum --every 0";
+    assert_refusal(&run(workplace().path(), line), &["every 0", "1 to 60"]);
     render_refused("--bits 9", &["--bits", "8, 16"]);
 }
 

@@ -7,9 +7,9 @@ use std::process::Command;
 use common::{REAL_SCENES, real_scenes};
 use glam::{DVec3, Vec3};
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
-use umbra::render::{Order, Progress, Rendered, Settings, render};
+use umbra::render::{Order, Piecewise, Progress, Rendered, Settings, render};
 use umbra::scene::{Camera, Draft, DraftTriangle, Light, Material, Scene, builtin, load};
-use umbra::shadow::Trace;
+use umbra::shadow::{Method, Trace, prepare};
 
 fn small() -> Settings {
     Settings { width: 80, height: 60, samples: 2, mask: true, ..Settings::default() }
@@ -52,6 +52,40 @@ fn the_picture_does_not_depend_on_the_order_of_samples() {
         assert_eq!(tiles.film, other.film, "{order:?}");
         assert_eq!(tiles.mask, other.mask, "{order:?}");
         assert_eq!(tiles.statistics.rays, other.statistics.rays, "{order:?}");
+    }
+}
+
+#[test]
+fn a_picture_rendered_in_pieces_is_the_picture() {
+    let scene = load("chair-room").unwrap();
+    let backend =
+        build(Backend::Grid, Test::Exact, &scene.triangles, &BuildOptions::default()).unwrap();
+    let shadows = prepare(Method::CacheTree, &scene, &*backend).unwrap();
+    for order in [Order::Tiles, Order::Scanline, Order::Serpentine] {
+        let settings = Settings { order, rows_per_unit: 60, mask: false, ..small() };
+        let whole = render(&scene, &*backend, &*shadows, &settings, &Progress::default()).unwrap();
+        for every in [1, 4] {
+            let mut pieces =
+                Piecewise::new(&scene, &*backend, &*shadows, &settings, every).unwrap();
+            let pixels = Progress::default();
+            while pieces.advance(&pixels) {}
+            let done = pieces.finish();
+            for &((x, y), colour) in &done.colours {
+                assert_eq!(
+                    colour,
+                    whole.film.pixels()[(y * 80 + x) as usize],
+                    "{order:?} ({x}, {y})"
+                );
+            }
+            let rendered = done.colours.len().abs_diff(80 * 60 / every as usize);
+            if every == 1 {
+                assert_eq!(rendered, 0, "{order:?}");
+                assert_eq!(done.statistics, whole.statistics, "{order:?}");
+            } else {
+                // Tiles at the border are smaller.
+                assert!(rendered <= 16 * 16, "{order:?}: {rendered} pixels too many or too few");
+            }
+        }
     }
 }
 

@@ -168,6 +168,17 @@ fn a_tolerance_that_is_none_is_refused() {
 }
 
 #[test]
+fn a_tree_deeper_than_any_path_is_refused() {
+    let scene = glass_room();
+    let (_, grid) = &backends(&scene)[0];
+    let prepared =
+        |tree_depth| prepare(Plan { tree_depth, ..Method::CacheTree.into() }, &scene, &**grid);
+    assert!(prepared(31).is_ok());
+    let refused = prepared(32).err().unwrap();
+    assert!(matches!(refused, MethodError::TreeDepth(32)), "{refused}");
+}
+
+#[test]
 fn glass_seen_first_by_a_memory_still_attenuates() {
     // The hazard of Figure 1: the search of a remembered voxel passes over the glass in it; had it
     // marked the glass as tested, the attenuation would be lost. Pictures of a room full of glass show it.

@@ -13,6 +13,12 @@ use crate::scene::Scene;
 use crate::shadow::{Combination, Method, Plan, Retest, SelfShadow};
 use crate::whole_file::{folder_of, write_whole};
 
+/// Voxels of a grid at most: 2 GiB before any triangle is in them.
+const MOST_VOXELS: u64 = 1 << 27;
+
+/// Threads at most: more than any machine has processors.
+const MOST_THREADS: usize = 1024;
+
 /// Which engine answers.
 #[derive(Args)]
 pub(super) struct EngineOptions {
@@ -63,7 +69,12 @@ fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
         .map(|part| part.trim().parse().ok().filter(|n| (1..=1024).contains(n)))
         .collect::<Option<_>>()
         .ok_or("give three whole numbers from 1 to 1024, like 64,64,32")?;
-    parts.try_into().map_err(|_| "give three numbers, like 64,64,32".to_owned())
+    let parts: [u32; 3] = parts.try_into().map_err(|_| "give three numbers, like 64,64,32")?;
+    let voxels: u64 = parts.iter().map(|&n| u64::from(n)).product();
+    if voxels > MOST_VOXELS {
+        return Err(format!("{voxels} voxels are too many; give at most {MOST_VOXELS} in all"));
+    }
+    Ok(parts)
 }
 
 /// The size of a picture.
@@ -101,8 +112,10 @@ impl EngineOptions {
 /// A pool of so many threads; of all processors if no number is given.
 pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
     let threads = match threads {
-        Some(0) => return Err(Failure::Input("--threads 0: give at least 1".to_owned())),
-        Some(n) => n,
+        Some(n) if (1..=MOST_THREADS).contains(&n) => n,
+        Some(n) => {
+            return Err(Failure::Input(format!("--threads {n}: give 1 to {MOST_THREADS}")));
+        }
         None => 0,
     };
     rayon::ThreadPoolBuilder::new()

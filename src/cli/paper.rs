@@ -9,8 +9,8 @@ use super::failure::Failure;
 use super::options::{check_outputs, parse_size, print, write_json};
 use super::progress::with_bar;
 use crate::measure::paper::{
-    Conditions, NODE_BYTES, Published, SceneReport, Storage, TABLE, reproduce, storage,
-    storage_table,
+    Conditions, NODE_BYTES, Published, SceneReport, Storage, TABLE, VariantReport,
+    compare_variants, reproduce, storage, storage_table,
 };
 use crate::occlusion::{Backend, Test};
 use crate::render::Progress;
@@ -18,12 +18,21 @@ use crate::scene::builtin::NAMES;
 use crate::shadow::{Method, Plan, Retest};
 
 const DETAILS: &str = "\
-Everything runs in one thread; the pictures are the paper's unless a size is given. The whole table
-takes an hour; --quick takes seconds, but its rates and gains are those of other pictures.
+Everything runs in one thread; the pictures are the paper's unless a size is given. All methods render
+in turns, a few milliseconds each; of each piece of the picture the least of all repetitions counts. The
+± is half the difference between the even and the odd repetitions. The whole table takes hours;
+--every 9 makes it of a ninth of the scanlines, which changes rates and gains little; --quick takes
+seconds, but its rates and gains are those of other pictures.
+
+--variants compares what else the paper mentions: the tolerance check, Woo's variant, forgetting at
+scanlines, serpentine scanlines, tiles, mailboxes, leaving out the spawner. 'a ray' is the work of all
+rendering by ray, 'saved' its share saved over trace, 'object' and 'voxel' the paper's success rates,
+'recalled' the share of blocked queries that a memory answered, 'tests' triangle tests a query.
 
 Examples:
   umbra paper --quick
-  umbra paper --scene drum --backends grid,embree --stats drum.json";
+  umbra paper --every 9 --scene drum --backends grid,embree --stats drum.json
+  umbra paper --every 9 --scene chair-room --backends grid --variants";
 
 /// Rebuilds the four scenes of Pearce & Jevans 1991 and prints their Table 2 beside ours
 #[derive(Args)]
@@ -41,21 +50,27 @@ pub(super) struct Paper {
     /// Size of the pictures, instead of the paper's
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
-    /// Samples along each side of a pixel, instead of the paper's 3
+    /// Samples along each side of a pixel, instead of the paper's: 3, and 1 for the drum
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
+    /// Renders one scanline of every so many only
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    every: u32,
     /// Reflections and refractions that a ray may go through
     #[arg(long, value_name = "N", default_value_t = 5)]
     depth: u8,
     /// Factor on the paper's triangles
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     tessellation: f64,
-    /// How often everything is measured; of each scanline the least counts
+    /// How often everything is measured; of each piece of a picture the least counts
     #[arg(long, value_name = "N", default_value_t = 3)]
     repetitions: usize,
     /// Whether a traversal tests again what was tested from memory
     #[arg(long, value_enum, default_value_t)]
     retest: Retest,
+    /// Compares what else the paper mentions, instead of printing its table
+    #[arg(long, conflicts_with = "retest")]
+    variants: bool,
     /// Small pictures of scenes with few triangles, measured once: to see that it works
     #[arg(long)]
     quick: bool,
@@ -82,6 +97,7 @@ impl Paper {
             test: self.test,
             size: self.size,
             samples: self.samples,
+            every: self.every,
             depth: self.depth,
             tessellation: self.tessellation,
             repetitions: self.repetitions,
@@ -109,6 +125,9 @@ impl Paper {
         // One thread, which is the one whose work is counted.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.map_err(|e| Failure::Input(format!("cannot start a thread: {e}")))?;
+        if self.variants {
+            return self.compare_variants(&conditions, &pool);
+        }
         let mut scenes = Vec::new();
         for published in self.scenes() {
             let progress = Progress::default();
@@ -123,13 +142,39 @@ impl Paper {
             let storage = &storage(NODE_BYTES);
             write_json(path, &Report { scenes: &scenes, node_bytes: NODE_BYTES, storage })?;
         }
-        match scenes.iter().flat_map(|scene| &scene.columns).find(|column| !column.agree) {
-            None => Ok(()),
-            Some(column) => Err(Failure::Comparison(format!(
-                "not all methods made the same picture over {}",
-                column.backend
-            ))),
+        let columns = scenes.iter().flat_map(|scene| &scene.columns);
+        agreed(columns.map(|column| (column.agree, column.backend)))
+    }
+
+    fn compare_variants(
+        &self,
+        conditions: &Conditions,
+        pool: &rayon::ThreadPool,
+    ) -> Result<(), Failure> {
+        let mut reports: Vec<VariantReport> = Vec::new();
+        for published in self.scenes() {
+            let progress = Progress::default();
+            let scene = published.scene;
+            let of_scene = with_bar(conditions.pixels_of_variants(scene), &progress, || {
+                pool.install(|| compare_variants(scene, conditions, &progress))
+            })?;
+            of_scene.iter().try_for_each(|report| print(&format!("{report}\n")))?;
+            reports.extend(of_scene);
         }
+        if let Some(path) = &self.stats {
+            write_json(path, &reports)?;
+        }
+        agreed(reports.iter().map(|report| (report.agree, report.backend)))
+    }
+}
+
+/// Fails if not all methods agreed over one of the backends.
+fn agreed(mut reports: impl Iterator<Item = (bool, &'static str)>) -> Result<(), Failure> {
+    match reports.find(|(agree, _)| !agree) {
+        None => Ok(()),
+        Some((_, backend)) => Err(Failure::Comparison(format!(
+            "not all methods made the same picture over {backend}"
+        ))),
     }
 }
 

@@ -125,19 +125,20 @@ impl<'a> Unit<'a> {
                 let y = pixels[row.end].1;
                 let length = pixels[row.end..].iter().take_while(|pixel| pixel.1 == y).count();
                 row = row.end..row.end + length;
-                self.scanline(pixels, row.clone(), progress);
+                self.stretch(pixels, row.clone(), progress);
             }
         }
         self.finish()
     }
 
-    /// Renders the pixels of one scanline, each sample by itself.
-    pub(super) fn scanline(&mut self, pixels: &[Place], row: Range<usize>, progress: &Progress) {
-        if row.start > 0 {
+    /// Renders pixels of one scanline that follow each other, each sample by itself.
+    pub(super) fn stretch(&mut self, pixels: &[Place], stretch: Range<usize>, progress: &Progress) {
+        let before = stretch.start.checked_sub(1).map(|last| pixels[last].1);
+        if before.is_some_and(|row| row != pixels[stretch.start].1) {
             self.shadows.begin_scanline();
         }
         let samples = self.samples_a_pixel();
-        for sample in row.start * samples..row.end * samples {
+        for sample in stretch.start * samples..stretch.end * samples {
             self.batch(pixels, sample..sample + 1, progress);
         }
     }

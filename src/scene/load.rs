@@ -47,8 +47,11 @@ pub(super) fn read_mesh(path: &Path) -> Result<Draft, SceneError> {
 
 /// The bytes of a file that must not be empty.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
-    let bytes =
-        fs::read(path).map_err(|reason| SceneError::Unreadable { path: path.into(), reason })?;
+    let unreadable = |reason| SceneError::Unreadable { path: path.into(), reason };
+    if path.is_dir() {
+        return Err(unreadable(directory()));
+    }
+    let bytes = fs::read(path).map_err(unreadable)?;
     if bytes.is_empty() {
         return Err(malformed(path, "the file is empty"));
     }
@@ -69,14 +72,16 @@ fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
+/// What is wrong with a directory.
+fn directory() -> io::Error {
+    io::Error::other(format!("this is a directory; name a file in it: umbra reads {READABLE}"))
+}
+
 /// Why a name without a readable extension is no scene.
 fn not_a_scene(name: &str) -> SceneError {
     let path = PathBuf::from(name);
     if path.is_dir() {
-        let reason = io::Error::other(format!(
-            "this is a directory; name a file of it that ends in {READABLE}"
-        ));
-        return SceneError::Unreadable { path, reason };
+        return SceneError::Unreadable { path, reason: directory() };
     }
     if path.exists() {
         return malformed(&path, format!("unknown kind of file; umbra reads {READABLE}"));

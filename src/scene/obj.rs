@@ -12,6 +12,7 @@ use glam::{DVec3, Vec3};
 
 use super::{
     Draft, DraftTriangle, Material, SceneError,
+    gltf::MAGIC as GLB_MAGIC,
     load::{empty_draft, malformed, read_file},
     mtl,
     polygon::triangulate,
@@ -20,6 +21,15 @@ use super::{
 /// Reads an OBJ file and its MTL files.
 pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
     let bytes = read_file(path)?;
+    if bytes.starts_with(GLB_MAGIC) {
+        return Err(malformed(path, "this is no OBJ but a GLB; name it .glb"));
+    }
+    if let Some(place) = bytes.iter().position(|&byte| byte == 0) {
+        return Err(malformed(
+            path,
+            format!("this is no OBJ: byte {place} is 0, so it is no text"),
+        ));
+    }
     let text = String::from_utf8_lossy(&bytes);
     let mut materials = Materials::default();
     let mut draft = empty_draft(path);

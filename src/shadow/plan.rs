@@ -6,8 +6,8 @@ use clap::ValueEnum;
 
 use super::{
     Budget, Cached, Combination, Forgetful, LastCell, LastOccluder, LastVoxel, Memory, Method,
-    Nearby, PerLight, PerPath, Prepared, Retest, Shelf, Tolerance, Trace, VerdictSet, Verdicts,
-    cache_tree, woo,
+    Nearby, Path, PerLight, PerPath, Prepared, Retest, Shelf, Tolerance, Trace, VerdictSet,
+    Verdicts, cache_tree, woo,
 };
 use crate::occlusion::Occlusion;
 use crate::scene::{Scene, default_budget};
@@ -77,6 +77,12 @@ pub enum MethodError {
         "tolerance {0}: give a number from 0 (none) to 0.5 (any direction that is not opposite)"
     )]
     Tolerance(f32),
+    /// Deeper than any path.
+    #[error(
+        "tree depth {0}: the table of a ray's path holds {max} reflections and refractions; give 0 to {max}",
+        max = Path::MAX_LEVEL
+    )]
+    TreeDepth(u8),
     /// Verdicts are proofs about all triangles.
     #[error(
         "{0} counts the triangle that a ray starts on like any other, so it cannot be left out: use --self-shadow offset, or no verdict"
@@ -96,6 +102,9 @@ pub fn prepare<'a>(
     let plan = plan.into();
     if !(0.0..=0.5).contains(&plan.tolerance) {
         return Err(MethodError::Tolerance(plan.tolerance));
+    }
+    if plan.tree_depth > Path::MAX_LEVEL {
+        return Err(MethodError::TreeDepth(plan.tree_depth));
     }
     if plan.self_shadow == SelfShadow::Exclude && !plan.verdicts.is_empty() {
         return Err(MethodError::LeavesOut(plan.combination()));

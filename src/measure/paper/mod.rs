@@ -11,27 +11,28 @@ mod lockstep;
 mod meter;
 mod published;
 mod table;
+mod variants;
 
 use serde::Serialize;
 
 use crate::occlusion::{Backend, BackendError, BuildOptions, Test, build};
 use crate::render::{Order, Progress, RayCounts, Settings, SettingsError};
 use crate::scene::{SceneError, builtin};
-use crate::shadow::{
-    LastVoxel, Method, MethodError, PerPath, Plan, Prepared, ShadowTally, prepare,
-};
-use lockstep::{Taken, render_in_turns};
+use crate::shadow::{LastVoxel, Method, MethodError, PerPath, Plan, ShadowTally, prepare};
+use lockstep::{Contestant, Taken, render_in_turns};
 
 pub use meter::{Meter, Unit};
 pub use published::{Published, Storage, TABLE, storage};
 pub use table::storage_table;
+pub use variants::{VARIANTS, Variant, VariantCost, VariantReport, compare_variants};
 
 /// Bytes of a node of our cache trees.
 pub const NODE_BYTES: usize = PerPath::<LastVoxel>::NODE_BYTES;
 
-/// The methods of Table 2, and none to compare them with.
-const METHODS: [Method; 4] =
-    [Method::Trace, Method::ObjectCache, Method::VoxelCache, Method::CacheTree];
+/// The methods of Table 2, none to compare them with, and none once more: what that gains over itself
+/// is the error of the measure.
+const METHODS: [Method; 5] =
+    [Method::Trace, Method::ObjectCache, Method::VoxelCache, Method::CacheTree, Method::Trace];
 
 /// How the table is made.
 #[derive(Clone, Debug)]
@@ -44,6 +45,8 @@ pub struct Conditions {
     pub size: Option<(u32, u32)>,
     /// Samples along each side of a pixel, instead of the paper's.
     pub samples: Option<u32>,
+    /// Only the middle one of every so many scanlines is rendered.
+    pub every: u32,
     /// Reflections and refractions that a ray may go through.
     pub depth: u8,
     /// Factor on the paper's triangles.
@@ -78,15 +81,34 @@ impl Conditions {
         if self.repetitions == 0 {
             return Err(PaperError::Repetitions);
         }
-        Ok(TABLE.iter().try_for_each(|column| self.settings(column.scene).check())?)
+        for column in &TABLE {
+            let settings = self.settings(column.scene);
+            settings.check()?;
+            if !(1..=settings.height).contains(&self.every) {
+                return Err(PaperError::Every { every: self.every, height: settings.height });
+            }
+        }
+        Ok(())
     }
 
-    /// Pixels that will be rendered of a scene, over all methods and repetitions.
+    /// Pixels that will be rendered of a scene, over all repetitions of so many methods.
+    fn pixels_by(&self, scene: &str, methods: usize) -> u64 {
+        let Settings { width, height, .. } = self.settings(scene);
+        // Everyone renders everything twice: see `lockstep`.
+        let pictures = 2 * self.backends.len() * methods * self.repetitions;
+        u64::from(width) * u64::from(height / self.every) * pictures as u64
+    }
+
+    /// Pixels that will be rendered for the table of a scene.
     #[must_use]
     pub fn pixels(&self, scene: &str) -> u64 {
-        let Settings { width, height, .. } = self.settings(scene);
-        let pictures = self.backends.len() * METHODS.len() * self.repetitions;
-        u64::from(width) * u64::from(height) * pictures as u64
+        self.pixels_by(scene, METHODS.len())
+    }
+
+    /// Pixels that will be rendered to compare the variants in a scene.
+    #[must_use]
+    pub fn pixels_of_variants(&self, scene: &str) -> u64 {
+        self.pixels_by(scene, VARIANTS.len())
     }
 }
 
@@ -108,15 +130,38 @@ pub enum PaperError {
     /// Nothing would be measured.
     #[error("repetitions 0: give at least 1")]
     Repetitions,
+    /// No scanline would be rendered.
+    #[error("every {every}: give 1 to {height}, the scanlines of the picture")]
+    Every {
+        /// What was asked for.
+        every: u32,
+        /// Scanlines of the smallest picture.
+        height: u32,
+    },
 }
 
 /// A share of the process that is saved, in per cent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Gain {
-    /// From the least measurement of each scanline.
+    /// From the least measurement of each piece of the picture.
     pub percent: f64,
-    /// Half the distance of the least and the greatest that one repetition alone would have shown.
-    pub spread: f64,
+    /// Half the distance between what the even and the odd repetitions say by themselves; none if
+    /// nothing was repeated.
+    pub spread: Option<f64>,
+}
+
+impl Gain {
+    /// Of one way over another, when so much work comes before either.
+    fn over(without: &Taken, with: &Taken, before: u64) -> Self {
+        let saved = |without: u64, with: u64| {
+            100.0 * (1.0 - (before + with) as f64 / (before + without) as f64)
+        };
+        let [even, odd] = [0, 1].map(|half| saved(without.halves[half], with.halves[half]));
+        Self {
+            percent: saved(without.least, with.least),
+            spread: without.repeated.then_some(0.5 * (even - odd).abs()),
+        }
+    }
 }
 
 /// What one method did over one backend.
@@ -128,8 +173,8 @@ pub struct Cost {
     pub shadows: ShadowTally,
     /// What rendering took, in the unit of the report.
     pub render: u64,
-    /// The same, by repetition.
-    pub repetitions: Vec<u64>,
+    /// The same by the even and by the odd repetitions alone.
+    pub halves: [u64; 2],
 }
 
 /// Table 2 for one scene over one backend.
@@ -151,6 +196,8 @@ pub struct Column {
     pub voxel_gain: Gain,
     /// Of a cache tree over a voxel cache.
     pub tree_gain: Gain,
+    /// Of none over none: the error of the measure.
+    pub error: Gain,
     /// What building the backend took.
     pub build: u64,
     /// The methods.
@@ -174,6 +221,8 @@ pub struct SceneReport {
     pub height: u32,
     /// Samples a pixel.
     pub samples_per_pixel: u32,
+    /// Of every so many scanlines one was rendered: to that share all counts and measures belong.
+    pub every: u32,
     /// What work is counted in.
     pub unit: Unit,
     /// What making and tessellating the scene took.
@@ -201,15 +250,18 @@ pub fn reproduce(
         let test = conditions.test.unwrap_or_else(|| backend.default_test());
         let before = meter.read();
         let engine = build(backend, test, &scene.triangles, &BuildOptions::default())?;
-        let methods = METHODS
+        let contestants = METHODS
             .iter()
-            .map(|&method| prepare(Plan { method, ..conditions.plan }, &scene, &*engine))
-            .collect::<Result<Vec<Box<dyn Prepared>>, _>>()?;
+            .map(|&method| {
+                let method = prepare(Plan { method, ..conditions.plan }, &scene, &*engine)?;
+                Ok(Contestant { method, settings })
+            })
+            .collect::<Result<Vec<_>, MethodError>>()?;
         let build = meter.read() - before;
-        let repetitions = conditions.repetitions;
+        let Conditions { every, repetitions, .. } = *conditions;
         let taken =
-            render_in_turns(&scene, &*engine, &methods, &settings, repetitions, &meter, progress)?;
-        columns.push(column(backend, test, load, build, &taken));
+            render_in_turns(&scene, &*engine, &contestants, every, repetitions, &meter, progress)?;
+        columns.push(column((backend, test), (load, build), every, &taken));
     }
     Ok(SceneReport {
         published: *published,
@@ -218,44 +270,47 @@ pub fn reproduce(
         width: settings.width,
         height: settings.height,
         samples_per_pixel: settings.samples * settings.samples,
+        every: conditions.every,
         unit: meter.unit(),
         load,
         columns,
     })
 }
 
-fn column(backend: Backend, test: Test, load: u64, build: u64, taken: &[Taken]) -> Column {
-    let [none, object, voxel, tree] = taken else { unreachable!("a measurement a method") };
-    let gain = |without: &Taken, with: &Taken| {
-        let saved = |without: u64, with: u64| {
-            let whole = |render: u64| (load + build + render) as f64;
-            100.0 * (1.0 - whole(with) / whole(without))
-        };
-        let single = without.repetitions.iter().zip(&with.repetitions);
-        let (low, high) = single.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| {
-            (low.min(saved(*a, *b)), high.max(saved(*a, *b)))
-        });
-        Gain { percent: saved(without.least, with.least), spread: 0.5 * (high - low) }
-    };
-    let rate = |hits: u64, tested: u64| 100.0 * hits as f64 / tested.max(1) as f64;
+fn column(
+    (backend, test): (Backend, Test),
+    (load, build): (u64, u64),
+    every: u32,
+    taken: &[Taken],
+) -> Column {
+    let [none, object, voxel, tree, again] = taken else { unreachable!("a measurement a method") };
+    // Of a part of the picture, the work before it is charged that part only.
+    let before = (load + build) / u64::from(every);
+    let gain = |without: &Taken, with: &Taken| Gain::over(without, with, before);
     let (haines, pearce) = (object.statistics.shadows, voxel.statistics.shadows);
     let methods = METHODS.iter().zip(taken).map(|(method, taken)| Cost {
         method: method.name(),
         shadows: taken.statistics.shadows,
         render: taken.least,
-        repetitions: taken.repetitions.clone(),
+        halves: taken.halves,
     });
     Column {
         backend: backend.name(),
         test: test.name(),
         rays: none.statistics.rays,
-        object_rate: rate(haines.object_hits, haines.object_tested),
-        voxel_rate: rate(pearce.voxel_hits, pearce.voxel_tested),
+        object_rate: percent(haines.object_hits, haines.object_tested),
+        voxel_rate: percent(pearce.voxel_hits, pearce.voxel_tested),
         object_gain: gain(none, object),
         voxel_gain: gain(object, voxel),
         tree_gain: gain(voxel, tree),
+        error: gain(none, again),
         build,
         methods: methods.collect(),
         agree: taken.iter().all(|taken| taken.colours == none.colours),
     }
+}
+
+/// A share in per cent.
+fn percent(part: u64, whole: u64) -> f64 {
+    100.0 * part as f64 / whole.max(1) as f64
 }

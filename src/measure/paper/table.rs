@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::{Column, Gain, NODE_BYTES, SceneReport, storage};
 use crate::measure::grouped;
+use crate::shadow::Method;
 
 /// Width of the first column, and of the others.
 const NAME: usize = 38;
@@ -13,9 +14,13 @@ impl fmt::Display for SceneReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { published, width, height, samples_per_pixel, .. } = self;
         let samples = if *samples_per_pixel == 1 { "sample" } else { "samples" };
+        let part = match self.every {
+            1 => String::new(),
+            every => format!(", one scanline in {every}"),
+        };
         writeln!(
             f,
-            "{} ({}): {width}x{height}, {samples_per_pixel} {samples} a pixel, gains in {}",
+            "{} ({}): {width}x{height}, {samples_per_pixel} {samples} a pixel{part}, gains in {}",
             published.title,
             published.scene,
             self.unit.name()
@@ -53,6 +58,7 @@ impl fmt::Display for SceneReport {
         row("gain: cache tree over voxel cache", paper(published.tree_gain), &|column| {
             gain(column.tree_gain)
         })?;
+        row("error: none over none", none(), &|column| gain(column.error))?;
         row("nodes of all cache trees", none(), &|column| grouped(memories(column)))?;
         row("  their bytes", none(), &|column| grouped(memories(column) * NODE_BYTES as u64))?;
         row("same picture by every method", none(), &|column| {
@@ -62,11 +68,14 @@ impl fmt::Display for SceneReport {
 }
 
 fn memories(column: &Column) -> u64 {
-    column.methods.last().map_or(0, |tree| tree.shadows.memories)
+    let tree = column.methods.iter().find(|cost| cost.method == Method::CacheTree.name());
+    tree.map_or(0, |tree| tree.shadows.memories)
 }
 
-fn gain(gain: Gain) -> String {
-    format!("{:.2} ±{:.2} %", gain.percent, gain.spread)
+/// 1.234 and 0.1 as 1.23 ±0.10 %.
+pub fn gain(gain: Gain) -> String {
+    let spread = gain.spread.map_or(String::new(), |spread| format!(" ±{spread:.2}"));
+    format!("{:.2}{spread} %", gain.percent)
 }
 
 /// Table 1 and §10 beside ours.

@@ -14,6 +14,9 @@ use super::{Problem, item};
 const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
 
+/// What a GLB begins with.
+pub const MAGIC: &[u8] = b"glTF";
+
 /// A glTF file with its buffers.
 pub(super) struct Container<'a> {
     pub(super) root: Root,
@@ -24,11 +27,8 @@ pub(super) struct Container<'a> {
 impl<'a> Container<'a> {
     pub(super) fn open(path: &Path, bytes: &'a [u8]) -> Result<Self, Problem> {
         let must_be_binary = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb"));
-        let (json, blob) = if must_be_binary || bytes.starts_with(b"glTF") {
-            split(bytes)?
-        } else {
-            (bytes, None)
-        };
+        let (json, blob) =
+            if must_be_binary || bytes.starts_with(MAGIC) { split(bytes)? } else { (bytes, None) };
         let root = Root::from_slice(json).map_err(|e| format!("not glTF JSON: {e}"))?;
         let buffers = root
             .buffers
@@ -132,7 +132,7 @@ impl Elements<'_> {
 
 /// The JSON and the binary chunk of a GLB.
 fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
-    if !bytes.starts_with(b"glTF") {
+    if !bytes.starts_with(MAGIC) {
         return Err("not a GLB: it does not begin with 'glTF'".to_owned());
     }
     let word = |at: usize| {

@@ -27,6 +27,7 @@ use super::{
     placement::Placement,
 };
 use container::Container;
+pub(super) use container::MAGIC;
 use nodes::NodeTransforms;
 
 /// Reads a GLB or glTF file.

@@ -1,4 +1,5 @@
-//! Spanky the snare drum, on its stand on a polished rostrum.
+//! Spanky the snare drum, on its stand on a rostrum. Chrome and lacquer reflect, as few parts did in the
+//! paper's, where a tree of caches gains 2.7 %.
 
 mod body;
 mod hardware;
@@ -136,7 +137,7 @@ impl Materials {
             ),
             wood: model.material("hickory", satin(0.72, 0.50, 0.28)),
             rubber: model.material("rubber", satin(0.04, 0.04, 0.04)),
-            rostrum: model.material("rostrum", glossy(0.05, 0.05, 0.06, 0.12)),
+            rostrum: model.material("rostrum", satin(0.05, 0.05, 0.06)),
             backdrop: model.material("backdrop", matt(0.30, 0.37, 0.42)),
         }
     }
