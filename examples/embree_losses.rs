@@ -35,9 +35,9 @@ fn down_at_vertices(scale: f32) -> Vec<Ray> {
     vertices.map(|(x, z)| Ray::towards(scale * Vec3::new(x, 1.0, z), scale * Vec3::NEG_Y)).collect()
 }
 
-/// Down, but not straight, at every vertex: the direction has no zero component.
+/// Down, but not straight, at every vertex inside: the direction has no zero component.
 fn aslant_at_vertices(scale: f32) -> Vec<Ray> {
-    let vertices = (0..=SIDE).flat_map(|i| (0..=SIDE).map(move |j| (i as f32, j as f32)));
+    let vertices = (1..SIDE).flat_map(|i| (1..SIDE).map(move |j| (i as f32, j as f32)));
     let origin = Vec3::new(7.3, 5.1, 8.7);
     vertices
         .map(|(x, z)| Ray::towards(scale * origin, scale * (Vec3::new(x, 0.0, z) - origin)))
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "rays that are blocked, and who loses them", "rays", "blocked", "robust", "fast", "umbra"
     );
     compare("straight down at the vertices of a floor", floor(1.0), &down_at_vertices(1.0))?;
-    compare("aslant at the vertices of a floor", floor(1.0), &aslant_at_vertices(1.0))?;
+    compare("aslant at the vertices inside a floor", floor(1.0), &aslant_at_vertices(1.0))?;
     compare("the same, all 1e-24 in size", floor(1e-24), &aslant_at_vertices(1e-24))?;
     compare("the same, all 1e19 in size", floor(1e19), &aslant_at_vertices(1e19))?;
     let short = with_short_directions(aslant_at_vertices(1.0));

@@ -47,11 +47,11 @@ fn on_floor(index: usize) -> Vec3 {
     Vec3::new(14.0 * spread(index, 1) - 7.0, 0.0, 14.0 * spread(index, 2) - 7.0)
 }
 
-/// Straight down just inside the floor's border: the direction has two zero components.
+/// Straight down from far above just inside the floor's border: the direction has two zero components.
 fn down_beside_the_border(index: usize) -> Ray {
     let inside = 1e-5 * (1.0 + spread(index, 1));
-    let origin = Vec3::new(8.0 - inside, 100.0, 14.0 * spread(index, 2) - 7.0);
-    Ray { origin, direction: Vec3::new(0.0, -200.0, 0.0), end: 1.0 }
+    let origin = Vec3::new(8.0 - inside, 1000.0, 14.0 * spread(index, 2) - 7.0);
+    Ray { origin, direction: Vec3::NEG_Y, end: 2000.0 }
 }
 
 /// From just above the floor to a light far below: the blocker is near the start of a long segment.

@@ -461,6 +461,9 @@ fn overlapping_primitives() {
             let through = |x: f32| Ray::towards(Vec3::new(x, 0.25, -1.0), Vec3::Z);
             assert!(contender.blocked(&through(0.25)), "{} {copies}", contender.name);
             assert!(!contender.blocked(&through(0.8)), "{} {copies}", contender.name);
+            // The grid once listed half of the copies in half of its voxels.
+            let memory = contender.engine.memory();
+            assert!(memory < 1000 * copies, "{} {copies}: {memory} bytes", contender.name);
         }
     }
 }

@@ -41,7 +41,8 @@ fn certify_stops_when_its_time_is_over() {
 #[test]
 fn extremes_prints_a_line_a_case_and_writes_every_engine_and_test() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "extremes --queries 200 --cases at-edges,signed-zero --backends grid,cwbvh --stats s.json";
+    let line =
+        "extremes --queries 200 --cases at-edges,signed-zero --backends grid,cwbvh --stats s.json";
     let output = run(folder.path(), line);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     assert_eq!(String::from_utf8(output.stdout).unwrap().lines().count(), 3);

@@ -27,7 +27,8 @@ impl<'a> Range<'a> {
 
     /// A point in the box, or a little outside.
     pub fn anywhere(&self, random: &mut Random) -> DVec3 {
-        self.centre + 1.2 * self.half * random.point()
+        // Flat meshes are seen from outside their plane too.
+        self.centre + 1.2 * self.half.max(DVec3::splat(0.3 * self.size())) * random.point()
     }
 
     pub fn triangle(&self, random: &mut Random) -> [DVec3; 3] {

@@ -15,7 +15,7 @@ use crate::geometry::{Bounds, Ray, Triangles};
 const ORACLE_SAMPLE: usize = 100;
 
 /// The oracle is not asked about larger meshes.
-const LARGEST_FOR_ORACLE: usize = 5_000;
+const LARGEST_FOR_ORACLE: usize = 10_000;
 
 /// Blocked if any triangle blocks, else a tie if any is touched at an end of the ray, else clear.
 #[must_use]

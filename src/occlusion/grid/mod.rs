@@ -34,6 +34,10 @@ const UNIFORM_DENSITY: f64 = 4.0;
 /// Voxels to a triangle of the outermost grid where crowded voxels are divided.
 const NESTED_DENSITY: f64 = 0.5;
 
+/// Voxels that a triangle may lie in, on average: where many large triangles lie on each other there would be
+/// more, and the grid is made coarser until there are not.
+const MOST_ENTRIES: usize = 64;
+
 /// Most voxels along one axis.
 const MOST_VOXELS: f64 = 1024.0;
 
@@ -80,7 +84,21 @@ impl Grid {
             Some(resolution) => resolution.map(|n| n.clamp(1, MOST_VOXELS as u32)),
             None => resolution(max - min, density * triangles.len() as f64),
         };
-        build::build(triangles, Level::new(min, max, resolution, &bounds), options.nested)
+        // What was asked for is kept as long as places fit their 32 bits.
+        let most = match options.resolution {
+            Some(_) => u32::MAX as usize,
+            None => MOST_ENTRIES * triangles.len(),
+        };
+        let mut level = Level::new(min, max, resolution, &bounds);
+        loop {
+            match build::build(triangles, level, options.nested, most) {
+                Ok(grid) => return grid,
+                Err(build::TooFine { resolution }) => {
+                    let coarser = resolution.map(|n| n.div_ceil(2));
+                    level = Level::new(min, max, coarser, &bounds);
+                }
+            }
+        }
     }
 
     /// Voxels along x, y and z of the outermost grid.
