@@ -10,6 +10,7 @@ mod progress;
 mod query;
 mod render;
 mod scene;
+mod tradeoff;
 
 use std::process::ExitCode;
 
@@ -27,6 +28,7 @@ Examples:
   umbra render chair-room -o room.png
   umbra compare chair-room
   umbra query chair-room --rays rays.csv -o blocked.csv
+  umbra tradeoff chair-room --html tradeoff.html
   umbra paper --quick
   umbra certify --seconds 60
   umbra scene drum -o drum.glb";
@@ -44,6 +46,7 @@ enum Command {
     Render(render::Render),
     Compare(compare::Compare),
     Query(query::Query),
+    Tradeoff(tradeoff::Tradeoff),
     Paper(paper::Paper),
     Certify(certify::Certify),
     Extremes(extremes::Extremes),
@@ -57,6 +60,7 @@ pub fn main() -> ExitCode {
         Ok(Cli { command: Command::Render(render) }) => render.run(),
         Ok(Cli { command: Command::Compare(compare) }) => compare.run(),
         Ok(Cli { command: Command::Query(query) }) => query.run(),
+        Ok(Cli { command: Command::Tradeoff(tradeoff) }) => tradeoff.run(),
         Ok(Cli { command: Command::Paper(paper) }) => paper.run(),
         Ok(Cli { command: Command::Certify(certify) }) => certify.run(),
         Ok(Cli { command: Command::Extremes(extremes) }) => extremes.run(),
