@@ -1,8 +1,8 @@
 //! What exactness costs: the exact test against `pluecker`, in the same engine, on the same shadow rays.
 //!
 //! The shadow rays of a picture of each of the ten real scenes are recorded once. Both tests then take turns
-//! on them, so that a machine that slows down slows both; of each scene the median over the rounds counts,
-//! and in the end the median over the scenes.
+//! on short pieces of them, again and again, and of each piece the least time of each test counts: so neither a
+//! machine that slows down nor one that is shared favours either. In the end, the median over the scenes.
 //!
 //! `cargo bench --bench exact_cost`; the scenes are looked for in `UMBRA_SCENES` or `../shared/scenes`.
 
@@ -16,11 +16,14 @@ use umbra::occlusion::{Backend, BuildOptions, Occlusion, Tally, Test, build};
 use umbra::render::{Progress, Settings};
 use umbra::scene::{Scene, load};
 
-/// Rays replayed in one turn.
+/// Rays of each scene.
 const RAYS: usize = 20_000;
 
-/// Turns that each test takes.
-const ROUNDS: usize = 25;
+/// Rays in a piece: some 100 µs, in which a thread is seldom interrupted.
+const PIECE: usize = 200;
+
+/// Turns that each test takes on each piece.
+const ROUNDS: usize = 20;
 
 const BACKENDS: [Backend; 3] = [Backend::Grid, Backend::Bvh2, Backend::Cwbvh];
 
@@ -65,25 +68,25 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Nanoseconds a ray of `pluecker` and of `exact`, and how many times as long `exact` takes.
-fn cost(scene: &Scene, backend: Backend, rays: &[Ray]) -> (f64, f64, f64) {
-    let engine = |test| {
+/// Nanoseconds a ray of `pluecker` and of `exact`.
+fn cost(scene: &Scene, backend: Backend, rays: &[Ray]) -> [f64; 2] {
+    let engines = [Test::Pluecker, Test::Exact].map(|test| {
         build(backend, test, &scene.triangles, &BuildOptions::default()).expect("it is ours")
-    };
-    let (pluecker, exact) = (engine(Test::Pluecker), engine(Test::Exact));
-    let mut blocked = vec![false; rays.len()];
-    let mut rounds = Vec::new();
-    for _ in 0..=ROUNDS {
-        let times = [&pluecker, &exact].map(|engine| replay(&**engine, rays, &mut blocked));
-        rounds.push(times.map(|time| time.as_secs_f64() * 1e9 / rays.len() as f64));
+    });
+    let mut blocked = vec![false; PIECE];
+    let mut sums = [Duration::ZERO; 2];
+    for piece in rays.chunks(PIECE) {
+        let mut least = [Duration::MAX; 2];
+        for round in 0..ROUNDS {
+            // Who comes first changes, as the second finds the caches filled.
+            for turn in [round % 2, 1 - round % 2] {
+                let time = replay(&*engines[turn], piece, &mut blocked[..piece.len()]);
+                least[turn] = least[turn].min(time);
+            }
+        }
+        sums = [sums[0] + least[0], sums[1] + least[1]];
     }
-    // The first round fills the caches.
-    let rounds = &rounds[1..];
-    (
-        median(rounds.iter().map(|round| round[0]).collect()),
-        median(rounds.iter().map(|round| round[1]).collect()),
-        median(rounds.iter().map(|round| round[1] / round[0]).collect()),
-    )
+    sums.map(|sum| sum.as_secs_f64() * 1e9 / rays.len() as f64)
 }
 
 fn main() {
@@ -99,7 +102,8 @@ fn main() {
         let scene = load(path.to_str().expect("scene names are text")).expect("it loads");
         let rays = shadow_rays(&scene);
         for (backend, ratios) in BACKENDS.into_iter().zip(&mut ratios) {
-            let (pluecker, exact, ratio) = cost(&scene, backend, &rays);
+            let [pluecker, exact] = cost(&scene, backend, &rays);
+            let ratio = exact / pluecker;
             println!("{name:26}{backend:>9}{pluecker:>11.0} ns{exact:>11.0} ns{ratio:>9.3}");
             ratios.push(ratio);
         }

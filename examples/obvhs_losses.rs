@@ -144,4 +144,9 @@ fn main() {
         let (plain, embree) = (triangle.intersect(&long), triangle.intersect_embree(&long));
         println!("with a direction 4 long: intersect {plain}, intersect_embree {embree}");
     }
+
+    let copies = vec![alone.triangles[0]; 2000];
+    let (options, time) = (BvhBuildParams::medium_build(), &mut Duration::default());
+    let chain = build_bvh2_from_tris(&copies, options, time);
+    println!("2,000 copies of one triangle: a tree {} deep in {:.1?}", chain.max_depth, *time);
 }

@@ -96,7 +96,7 @@ fn the_oracle_agrees_with_the_verdicts_on_every_case() {
 #[test]
 fn every_case_has_blocked_rays() {
     for report in reports(&[], &[], QUERIES, |case| case.name != CROWDED) {
-        assert!(report.blocked * 200 > report.rays, "{}: {} blocked", report.case, report.blocked);
+        assert!(report.blocked > 0, "{}", report.case);
     }
 }
 
