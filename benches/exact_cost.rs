@@ -73,7 +73,7 @@ fn cost(scene: &Scene, backend: Backend, rays: &[Ray]) -> [f64; 2] {
     let engines = [Test::Pluecker, Test::Exact].map(|test| {
         build(backend, test, &scene.triangles, &BuildOptions::default()).expect("it is ours")
     });
-    let mut blocked = vec![false; PIECE];
+    let mut blocked = [false; PIECE];
     let mut sums = [Duration::ZERO; 2];
     for piece in rays.chunks(PIECE) {
         let mut least = [Duration::MAX; 2];

@@ -151,7 +151,7 @@ fn table(rows: &[Row], all: Summary, seconds: f64) -> String {
             summary.by_oracle,
             summary.wrong,
         ]
-        .map(|number| grouped(number))
+        .map(grouped)
     };
     for row in rows {
         text += &line(row.class, numbers(&row.summary));
