@@ -8,7 +8,7 @@
 //! Rasterization and Ray Casting. Graphics Interface 2012 (edge volumes); the arithmetic was read in
 //! Embree's source.
 
-use super::{Claims, RayLanes, TriangleTest, own_box};
+use super::{Claims, RayLanes, TriangleTest, vicinity};
 use crate::geometry::lanes::{Lanes, Vector, add, cross, dot, sub};
 use crate::geometry::{Ray, Triangle};
 
@@ -45,8 +45,8 @@ impl TriangleTest for Pluecker {
         Claims { certain: 0, open: L::bits(open) }
     }
 
-    fn settle(ray: &Ray, triangle: &Triangle) -> bool {
-        own_box::meets(ray, triangle)
+    fn settle(ray: &Ray, triangle: &Triangle, slack: f64) -> bool {
+        vicinity::meets(ray, triangle, slack)
     }
 }
 
