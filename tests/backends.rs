@@ -72,8 +72,11 @@ fn the_grid_loses_nothing_at_any_resolution() {
     let brute =
         build(Backend::Brute, Test::Pluecker, &triangles, &BuildOptions::default()).unwrap();
     let resolutions = [[1, 1, 1], [1, 1, 200], [3, 5, 7], [64, 64, 64], [128, 2, 128]];
-    for (resolution, nested) in resolutions.into_iter().flat_map(|r| [(r, false), (r, true)]) {
-        let grid = GridOptions { resolution: Some(resolution), nested };
+    let kinds = [(false, false), (true, false), (true, true)];
+    for (resolution, (nested, lazy)) in
+        resolutions.into_iter().flat_map(|resolution| kinds.map(|kind| (resolution, kind)))
+    {
+        let grid = GridOptions { resolution: Some(resolution), nested, lazy };
         let options = BuildOptions { grid, ..Default::default() };
         let grid = build(Backend::Grid, Test::Pluecker, &triangles, &options).unwrap();
         for aim in Aim::ALL {
@@ -84,7 +87,7 @@ fn the_grid_loses_nothing_at_any_resolution() {
                 assert_eq!(
                     grid.occluded(&ray, tally),
                     brute.occluded(&ray, tally),
-                    "{resolution:?} {ray:?}"
+                    "{resolution:?} {nested} {lazy} {ray:?}"
                 );
             }
         }

@@ -1,6 +1,6 @@
 //! The built-in scenes are what they say: the paper's numbers, and the same bits everywhere.
 
-use umbra::scene::builtin::{NAMES, draft, draft_at, triangle_count, view};
+use umbra::scene::builtin::{NAMES, deviation, draft, draft_at, triangle_count, view};
 use umbra::scene::{Light, Scene};
 
 /// Name, triangles and lights of the paper's Table 2, and the hash of our triangles.
@@ -121,4 +121,20 @@ fn unknown_names_and_senseless_tessellations_are_refused() {
         let refusal = draft_at("drum", tessellation).unwrap_err().to_string();
         assert!(refusal.contains("tessellation"), "{refusal}");
     }
+}
+
+#[test]
+fn more_triangles_are_nearer_to_the_true_surfaces() {
+    for name in ["drum", "chair-room"] {
+        let size = scene(name).bounds().diagonal();
+        let deviations = [0.01, 0.1, 1.0, 10.0].map(|factor| deviation(name, factor).unwrap());
+        for pair in deviations.windows(2) {
+            let [coarse, fine] = [pair[0], pair[1]].map(|d| d.root_mean_square());
+            assert!(fine > 0.0 && fine < 0.5 * coarse, "{name}: {coarse} then {fine}");
+            assert!(pair[1].greatest < pair[0].greatest, "{name}: {pair:?}");
+        }
+        assert!(deviations[3].greatest < 1e-3 * size, "{name}: {deviations:?}");
+    }
+    assert_eq!(deviation("jittered-dense", 1.0), None);
+    assert_eq!(deviation("teapot", 1.0), None);
 }

@@ -92,4 +92,5 @@ input!(
     crate::measure::compare::CompareError,
     crate::measure::paper::PaperError,
     crate::measure::recording::TooManyQueries,
+    crate::measure::tradeoff::TradeoffError,
 );

@@ -8,6 +8,7 @@ mod progress;
 mod query;
 mod render;
 mod scene;
+mod tradeoff;
 
 use std::process::ExitCode;
 
@@ -25,6 +26,7 @@ Examples:
   umbra render chair-room -o room.png
   umbra compare chair-room
   umbra query chair-room --rays rays.csv -o blocked.csv
+  umbra tradeoff chair-room --html tradeoff.html
   umbra paper --quick
   umbra scene drum -o drum.glb";
 
@@ -41,6 +43,7 @@ enum Command {
     Render(render::Render),
     Compare(compare::Compare),
     Query(query::Query),
+    Tradeoff(tradeoff::Tradeoff),
     Paper(paper::Paper),
     Scene(scene::SceneFile),
 }
@@ -52,6 +55,7 @@ pub fn main() -> ExitCode {
         Ok(Cli { command: Command::Render(render) }) => render.run(),
         Ok(Cli { command: Command::Compare(compare) }) => compare.run(),
         Ok(Cli { command: Command::Query(query) }) => query.run(),
+        Ok(Cli { command: Command::Tradeoff(tradeoff) }) => tradeoff.run(),
         Ok(Cli { command: Command::Paper(paper) }) => paper.run(),
         Ok(Cli { command: Command::Scene(scene) }) => scene.run(),
         Err(error) => match error.kind() {

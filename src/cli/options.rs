@@ -35,6 +35,9 @@ pub(super) struct EngineOptions {
     /// A plain uniform grid: crowded voxels are not divided
     #[arg(long)]
     pub uniform: bool,
+    /// Crowded voxels of the grid are divided when a ray first comes to them, not beforehand
+    #[arg(long, conflicts_with = "uniform")]
+    pub lazy: bool,
     /// Most memory that engine and shadow method may take, like 512M or 2G: what is prepared becomes coarser
     /// or steps aside, and says so; a quarter of the machine if not given
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
@@ -94,7 +97,7 @@ impl EngineOptions {
 
     /// Builds the backend; also says how many seconds that took.
     pub fn build(&self, scene: &Scene) -> Result<(Box<dyn Occlusion>, f64), Failure> {
-        let grid = GridOptions { resolution: self.grid, nested: !self.uniform };
+        let grid = GridOptions { resolution: self.grid, nested: !self.uniform, lazy: self.lazy };
         let options = BuildOptions { grid, ..BuildOptions::default() };
         let start = Instant::now();
         let backend = with_word(&format!("building {}", self.backend), || {

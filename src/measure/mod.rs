@@ -5,6 +5,9 @@ pub mod contender;
 mod grouped;
 pub mod paper;
 pub mod recording;
+pub mod report;
+pub mod tradeoff;
+mod truth;
 pub mod wilson;
 
 pub(crate) use grouped::grouped;

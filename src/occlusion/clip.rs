@@ -10,7 +10,7 @@ use crate::geometry::{Bounds, Ray};
 const FARTHEST_ORIGIN: f64 = (1u64 << 20) as f64;
 
 /// How a ray passes a box.
-pub(super) enum Clip {
+pub(crate) enum Clip {
     /// It does not come near it.
     Outside,
     /// It is near it from the first to the second `t`; both finite.

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::{Brute, Bvh2, Cwbvh, Engine, Grid, GridOptions, Occlusion, Walk};
+use super::{Brute, Bvh2, Cwbvh, Engine, Grid, GridOptions, LazyGrid, Occlusion, Walk};
 use crate::exact::Exact;
 use crate::geometry::Triangles;
 use crate::geometry::intersect::{Moller, Pluecker, Watertight};
@@ -133,6 +133,9 @@ pub fn build(
     options: &BuildOptions,
 ) -> Result<Box<dyn Occlusion>, BackendError> {
     Ok(match backend {
+        Backend::Grid if options.grid.lazy => {
+            engine(test, triangles, LazyGrid::new(triangles, options.grid), options)
+        }
         Backend::Grid => engine(test, triangles, Grid::new(triangles, options.grid), options),
         Backend::Bvh2 => engine(test, triangles, Bvh2::new(triangles), options),
         Backend::Cwbvh => engine(test, triangles, Cwbvh::new(triangles), options),

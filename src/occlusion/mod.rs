@@ -27,11 +27,13 @@ use std::any::Any;
 
 pub use brute::Brute;
 pub use bvh2::Bvh2;
+pub(crate) use clip::Clip;
 pub use cwbvh::Cwbvh;
 #[cfg(feature = "embree")]
 pub use embree::{Embree, EmbreeOptions, Isa, PacketWidth, Quality};
 pub use engine::Engine;
-pub use grid::{Grid, GridOptions};
+pub use grid::{Grid, GridOptions, LazyGrid};
+pub(crate) use grid::{Level, Steps};
 pub use kind::{Backend, BackendError, BuildOptions, Test, build};
 pub use left_out::LeftOut;
 pub use nearest::Nearest;

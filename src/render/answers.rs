@@ -3,9 +3,9 @@
 
 use glam::Vec3;
 
-use super::Film;
 use super::legend::{UNASKED, from_srgb, with_legend};
 use super::order::Place;
+use super::{Film, palette};
 use crate::shadow::Outcome;
 
 /// The light whose queries are shown; those of all together if none is named.
@@ -40,15 +40,15 @@ pub struct AnswerMap {
     pixels: Vec<Answered>,
 }
 
-/// The colour of an outcome: the palette of Okabe and Ito, which the colour-blind can tell apart.
+/// The colour of an outcome.
 fn colour_of(outcome: Outcome) -> Vec3 {
     from_srgb(match outcome {
-        Outcome::TraversalLit => [240, 228, 66],
-        Outcome::TraversalBlocked => [213, 94, 0],
-        Outcome::Object => [0, 158, 115],
-        Outcome::Voxel => [86, 180, 233],
+        Outcome::TraversalLit => palette::YELLOW,
+        Outcome::TraversalBlocked => palette::VERMILLION,
+        Outcome::Object => palette::BLUISH_GREEN,
+        Outcome::Voxel => palette::SKY_BLUE,
         Outcome::VerdictLit => [240, 240, 240],
-        Outcome::VerdictBlocked => [204, 121, 167],
+        Outcome::VerdictBlocked => palette::REDDISH_PURPLE,
     })
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::Vec3;
 use image::{DynamicImage, ImageBuffer, ImageFormat, Rgb};
 
 use super::Film;
@@ -80,27 +81,31 @@ fn encode(value: f32) -> f32 {
     if value <= 0.003_130_8 { 12.92 * value } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// Writes a picture; `exposure` is the factor from film to picture.
+impl Film {
+    /// What a screen shows of each pixel: sRGB values from 0 to 1, after `exposure`, the factor from film
+    /// to picture.
+    pub fn displayed(&self, exposure: f32) -> impl Iterator<Item = Vec3> {
+        self.pixels().iter().map(move |&pixel| (pixel * exposure).map(encode))
+    }
+}
+
+/// The bytes of a picture; `exposure` is the factor from film to picture.
 ///
-/// # Errors
-/// If the place cannot be written; what was there is untouched.
-pub fn write_picture(
-    film: &Film,
-    exposure: f32,
-    kind: Picture,
-    path: &Path,
-) -> Result<(), OutputError> {
+/// # Panics
+/// Without pixels, or with more than the format has room for; no film that was rendered is like that.
+#[must_use]
+pub fn encode_picture(film: &Film, exposure: f32, kind: Picture) -> Vec<u8> {
     let (width, height) = (film.width(), film.height());
-    let values = || film.pixels().iter().map(move |&p| p * exposure).flat_map(|p| p.to_array());
+    let values = || film.displayed(exposure).flat_map(|pixel| pixel.to_array());
     let whole = "film and picture are of one size";
     let (image, format): (DynamicImage, _) = match kind {
         Picture::Png8 => {
-            let bytes = values().map(|v| (encode(v) * 255.0).round() as u8).collect();
+            let bytes = values().map(|v| (v * 255.0).round() as u8).collect();
             let buffer = ImageBuffer::<Rgb<u8>, _>::from_raw(width, height, bytes).expect(whole);
             (buffer.into(), ImageFormat::Png)
         }
         Picture::Png16 => {
-            let words = values().map(|v| (encode(v) * 65535.0).round() as u16).collect();
+            let words = values().map(|v| (v * 65535.0).round() as u16).collect();
             let buffer = ImageBuffer::<Rgb<u16>, _>::from_raw(width, height, words).expect(whole);
             (buffer.into(), ImageFormat::Png)
         }
@@ -111,7 +116,21 @@ pub fn write_picture(
         }
     };
     let mut encoded = std::io::Cursor::new(Vec::new());
-    let unwritable = |reason: String| OutputError::Unwritable { path: path.to_owned(), reason };
-    image.write_to(&mut encoded, format).map_err(|e| unwritable(e.to_string()))?;
-    write_whole(path, encoded.get_ref()).map_err(|e| unwritable(e.to_string()))
+    image.write_to(&mut encoded, format).expect("memory takes any picture");
+    encoded.into_inner()
+}
+
+/// Writes a picture; `exposure` is the factor from film to picture.
+///
+/// # Errors
+/// If the place cannot be written; what was there is untouched.
+pub fn write_picture(
+    film: &Film,
+    exposure: f32,
+    kind: Picture,
+    path: &Path,
+) -> Result<(), OutputError> {
+    write_whole(path, &encode_picture(film, exposure, kind)).map_err(|reason| {
+        OutputError::Unwritable { path: path.to_owned(), reason: reason.to_string() }
+    })
 }

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::shadow_polygons::ShadowPolygons;
+use super::voxel_occlusion::VoxelOcclusion;
 use super::{Budget, Verdict};
 use crate::occlusion::Occlusion;
 use crate::scene::Scene;
@@ -12,35 +14,46 @@ use crate::scene::Scene;
 /// The verdicts, in the order in which they are asked: cheap ones first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum VerdictKind {}
+pub enum VerdictKind {
+    /// Voxels that all light reaches, or none (Woo & Amanatides 1990).
+    VoxelOcclusion,
+    /// Shadow volumes, counted (Crow 1977; Eo & Kyung 1989).
+    ShadowPolygons,
+}
 
 impl VerdictKind {
     /// How many there are.
-    pub const COUNT: usize = 0;
+    pub const COUNT: usize = 2;
 
     /// All of them.
-    pub const ALL: [Self; Self::COUNT] = [];
+    pub const ALL: [Self; Self::COUNT] = [Self::VoxelOcclusion, Self::ShadowPolygons];
 
     /// Its place in [`Self::ALL`].
     #[must_use]
     pub fn index(self) -> usize {
-        match self {}
+        self as usize
     }
 
     /// The name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {}
+        match self {
+            Self::VoxelOcclusion => "voxel-occlusion",
+            Self::ShadowPolygons => "shadow-polygons",
+        }
     }
 
     /// Makes it ready for a scene before a backend, within the memory that is left.
     pub(super) fn prepare<'a>(
         self,
-        _scene: &Scene,
+        scene: &Scene,
         _backend: &'a dyn Occlusion,
-        _budget: &Arc<Budget>,
+        budget: &Arc<Budget>,
     ) -> Box<dyn Verdict + 'a> {
-        match self {}
+        match self {
+            Self::VoxelOcclusion => Box::new(VoxelOcclusion::new(scene, budget)),
+            Self::ShadowPolygons => Box::new(ShadowPolygons::new(scene, budget)),
+        }
     }
 }
 

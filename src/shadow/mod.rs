@@ -26,6 +26,7 @@ mod method;
 mod object_cache;
 mod plan;
 mod query;
+mod shadow_polygons;
 mod shelf;
 mod tally;
 mod tolerance;
@@ -33,6 +34,8 @@ mod trace;
 mod transparent;
 mod verdict;
 mod voxel_cache;
+mod voxel_occlusion;
+mod voxels;
 mod woo;
 
 pub use budget::Budget;

@@ -6,6 +6,7 @@
 
 mod bezier;
 mod circle;
+mod deviation;
 mod revolution;
 mod sweep;
 mod tessellate;
@@ -14,6 +15,7 @@ mod tests;
 
 pub use bezier::{Cubic, Path, Point, Sheet};
 pub use circle::cosine_and_sine;
+pub use deviation::Deviation;
 pub use revolution::Revolution;
 pub use sweep::Tube;
 pub use tessellate::{Mesh, Resolution, tessellate, triangle_count};

@@ -2,9 +2,11 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
-use super::{Mesh, Path, Resolution, Revolution, Sheet, Surface, Tube, tessellate, triangle_count};
+use super::{
+    Deviation, Mesh, Path, Resolution, Revolution, Sheet, Surface, Tube, tessellate, triangle_count,
+};
 
 fn ball() -> Revolution {
     let profile = [(0.0, -1.0), (0.7, -0.7), (1.0, 0.0), (0.7, 0.7), (0.0, 1.0)];
@@ -180,4 +182,35 @@ fn normals_of_closed_surfaces_point_out() {
     };
     assert!(points_out(&tessellate(&ball(), Resolution { u: 20, v: 12 }), DVec3::ZERO));
     assert!(points_out(&tessellate(&body(), Resolution { u: 20, v: 12 }), DVec3::Y * 0.6));
+}
+
+#[test]
+fn four_times_the_triangles_deviate_a_quarter() {
+    fn check(surface: &impl Surface) {
+        let [coarse, fine] = [24, 48].map(|cells| {
+            Deviation::of(surface, Resolution { u: cells, v: cells }, DAffine3::IDENTITY)
+        });
+        let ratio = coarse.root_mean_square() / fine.root_mean_square();
+        assert!((3.0..5.0).contains(&ratio), "{ratio}");
+        assert!(coarse.greatest > fine.greatest && coarse.greatest > coarse.root_mean_square());
+    }
+    check(&ball());
+    check(&vase());
+    check(&body());
+    check(&cloth());
+    check(&pipe());
+}
+
+#[test]
+fn the_deviation_of_a_ball_is_that_of_its_chords() {
+    // 16 cells round the equator: the middle of a chord is 1 − cos(π/16) inside of the circle.
+    let chord = 1.0 - (std::f64::consts::PI / 16.0).cos();
+    let round = Deviation::of(&ball(), Resolution { u: 16, v: 400 }, DAffine3::IDENTITY);
+    assert!(round.greatest >= chord && round.greatest < 1.05 * chord, "{round:?} {chord}");
+    let larger = Deviation::of(
+        &ball(),
+        Resolution { u: 16, v: 400 },
+        DAffine3::from_scale(DVec3::splat(3.0)),
+    );
+    assert!((larger.greatest / round.greatest - 3.0).abs() < 1e-9, "{larger:?}");
 }

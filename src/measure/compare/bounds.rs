@@ -6,10 +6,10 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::rounding::{Fate, fate};
-use super::truth::Truths;
 use crate::geometry::lanes::Arithmetic;
 use crate::geometry::{Ray, TriangleId, Triangles};
 use crate::measure::contender::Contender;
+use crate::measure::truth::Truths;
 use crate::occlusion::embree_bounds::{at_least, at_most};
 use crate::occlusion::{Backend, Brute, BuildOptions, Occlusion, Tally, Test, build};
 

@@ -27,7 +27,6 @@ mod picture;
 mod report;
 mod rounding;
 mod table;
-mod truth;
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -37,11 +36,10 @@ use rayon::prelude::*;
 pub use bounds::Claim;
 use bounds::{Judge, brute};
 pub use report::{Checks, Disagreement, Kind, Report, Row};
-pub use truth::Truth;
-use truth::Truths;
 
 use super::contender::Contender;
 use super::recording::Recording;
+use super::truth::{Truth, Truths};
 use crate::exact::Verdict;
 use crate::geometry::Ray;
 use crate::geometry::lanes::Arithmetic;

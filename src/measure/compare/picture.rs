@@ -6,13 +6,13 @@ use glam::Vec3;
 
 use super::{Disagreement, Kind, Report};
 use crate::measure::recording::Recording;
-use crate::render::{Film, UNASKED, from_srgb, with_legend};
+use crate::render::{Film, UNASKED, from_srgb, palette, with_legend};
 
-/// What is told by colours, in the palette of Okabe and Ito; of several in one pixel, the first is shown.
-const MARKS: [(&str, [u8; 3]); 3] = [
-    ("unexplained", [240, 228, 66]),
-    ("false clear", [86, 180, 233]),
-    ("false blocked", [213, 94, 0]),
+/// What is told by colours; of several in one pixel, the first is shown.
+const MARKS: [(&str, palette::Srgb); 3] = [
+    ("unexplained", palette::YELLOW),
+    ("false clear", palette::SKY_BLUE),
+    ("false blocked", palette::VERMILLION),
 ];
 
 /// The brightest grey of the shadows below the marks.

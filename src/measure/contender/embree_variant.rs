@@ -86,6 +86,14 @@ impl EmbreeVariant {
         all
     }
 
+    /// Every one of the instruction set that Embree itself would choose here, which goes unnamed.
+    #[must_use]
+    pub fn of_best_isa() -> Vec<Self> {
+        let best = available().next_back();
+        let unnamed = |Self(options): Self| Self(EmbreeOptions { isa: None, ..options });
+        Self::all().into_iter().filter(|variant| variant.0.isa == best).map(unnamed).collect()
+    }
+
     /// The variants of a list on the command line: names, `default` or `all`.
     ///
     /// # Errors

@@ -2,15 +2,16 @@
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::level::{Content, Level};
 use super::voxelize::overlapped;
-use super::{Grid, PADDING, resolution};
+use super::{Grid, resolution};
 use crate::geometry::{Bounds, TriangleId, Triangles};
 
 /// A voxel with more triangles than this is divided.
-const CROWDED: usize = 16;
+pub(super) const CROWDED: usize = 16;
 
 /// Voxels to a triangle of the grid in a crowded voxel.
 const DENSITY: f64 = 2.0;
@@ -24,6 +25,13 @@ pub(super) const MOST_LEVELS: usize = 6;
 /// A voxel is divided only if that leaves at most this share of its triangles, on average, to a
 /// voxel inside that holds any.
 const LEAST_GAIN: f64 = 0.7;
+
+/// A grid whose padding is a larger part of a voxel's side would list most triangles several times.
+const MOST_PADDING: f64 = 0.25;
+
+/// Where a voxel gains nothing by being divided, its contents do by themselves if their box is this much
+/// smaller.
+const MUCH_SMALLER: f64 = 0.25;
 
 /// A grid in the making: which triangles lie in which voxel.
 struct Sorted {
@@ -82,13 +90,42 @@ pub(super) fn build(triangles: &Triangles, outermost: Level, nested: bool) -> Gr
             None => grid.add_list(sorted.list(voxel)),
         };
     }
-    grid.starts.push(end_of(&grid.order));
-    grid.starts.shrink_to_fit();
-    grid.order.shrink_to_fit();
+    grid.seal();
     grid
 }
 
+/// A grid of its own for a crowded voxel of an outermost grid; `None` where that gains too little.
+pub(super) fn divide(
+    triangles: &Triangles,
+    scene: Bounds,
+    outermost: &Level,
+    voxel: usize,
+    list: &[TriangleId],
+) -> Option<Grid> {
+    let division = Divider { triangles, scene }.divide(outermost, voxel, list, 1)?;
+    let level = &division.level;
+    let mut grid = Grid {
+        // The walk around may err as much as the padding allows.
+        min: level.min - outermost.pad,
+        max: level.corner(level.resolution) + outermost.pad,
+        levels: Vec::new(),
+        voxels: Vec::new(),
+        starts: Vec::new(),
+        order: Vec::new(),
+    };
+    grid.add_division(division);
+    grid.seal();
+    Some(grid)
+}
+
 impl Grid {
+    /// Nothing is added any more.
+    fn seal(&mut self) {
+        self.starts.push(end_of(&self.order));
+        self.starts.shrink_to_fit();
+        self.order.shrink_to_fit();
+    }
+
     fn add_list(&mut self, list: &[TriangleId]) -> Content {
         if list.is_empty() {
             return Content::EMPTY;
@@ -136,11 +173,31 @@ impl Divider<'_> {
         let place = [voxel % width, voxel / width % height, voxel / (width * height)];
         let min = outer.corner(place.map(|n| n as u32));
         let max = min + outer.side;
-        let resolution = resolution(outer.side, DENSITY * list.len() as f64);
+        self.divide_box(min, max, list, depth).or_else(|| {
+            // A small object in a large voxel ends up in one voxel again.
+            let boxes = list.iter().map(|&id| self.triangles.bounds_of(id));
+            let contents = boxes.reduce(Bounds::union)?;
+            let low = (contents.min.as_dvec3() - outer.pad).max(min);
+            let high = (contents.max.as_dvec3() + outer.pad).min(max);
+            let volumes = [high - low, max - min].map(DVec3::element_product);
+            let smaller = volumes[0] < MUCH_SMALLER * volumes[1];
+            smaller.then(|| self.divide_box(low, high, list, depth)).flatten()
+        })
+    }
+
+    /// Divides a box that all of the triangles inside a voxel lie in. A point of the voxel beside the box
+    /// belongs to the nearest voxel inside, which the walk takes it to be in.
+    fn divide_box(
+        &self,
+        min: DVec3,
+        max: DVec3,
+        list: &[TriangleId],
+        depth: usize,
+    ) -> Option<Division> {
+        let resolution = resolution(max - min, DENSITY * list.len() as f64);
         let resolution = resolution.map(|n| n.clamp(2, MOST_NESTED));
         let level = Level::new(min, max, resolution, &self.scene);
-        // Below this size rounding of the coordinates, not the triangles, would decide about voxels.
-        if level.pad > 16.0 * PADDING * level.side.min_element() {
+        if level.pad > MOST_PADDING * level.side.min_element() {
             return None;
         }
         let mut inside: Vec<(usize, TriangleId)> = Vec::new();

@@ -8,7 +8,7 @@ use crate::occlusion::clip::padding;
 
 /// Where the voxels of one grid are.
 #[derive(Clone, Debug)]
-pub(super) struct Level {
+pub(crate) struct Level {
     /// Lower corner of voxel (0, 0, 0).
     pub min: DVec3,
     /// Sides of a voxel, and their inverses.

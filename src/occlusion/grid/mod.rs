@@ -14,14 +14,19 @@
 //! Jevans, Wyvill: Adaptive Voxel Subdivision for Ray Tracing. Graphics Interface 1989.
 
 mod build;
+mod lazy;
 mod level;
+mod steps;
 mod voxelize;
 mod walk;
 
 use glam::DVec3;
-use level::{Content, Level};
+pub use lazy::LazyGrid;
+use level::Content;
+pub(crate) use level::Level;
+pub(crate) use steps::Steps;
 
-use super::clip::padding;
+use super::clip::{Clip, clip, padding};
 use super::{Cell, Visit, Walk};
 use crate::geometry::{Ray, TriangleId, Triangles};
 
@@ -45,11 +50,13 @@ pub struct GridOptions {
     pub resolution: Option<[u32; 3]>,
     /// Whether crowded voxels are divided.
     pub nested: bool,
+    /// Whether they are so only when a ray first comes to them.
+    pub lazy: bool,
 }
 
 impl Default for GridOptions {
     fn default() -> Self {
-        Self { resolution: None, nested: true }
+        Self { resolution: None, nested: true, lazy: false }
     }
 }
 
@@ -73,17 +80,28 @@ impl Grid {
     /// Without triangles.
     #[must_use]
     pub fn new(triangles: &Triangles, options: GridOptions) -> Self {
+        let density = if options.nested { NESTED_DENSITY } else { UNIFORM_DENSITY };
+        let outermost = Self::place(triangles, options.resolution, density);
+        build::build(triangles, outermost, options.nested)
+    }
+
+    /// The outermost grid alone of one whose crowded voxels are to be divided.
+    fn undivided(triangles: &Triangles, resolution: Option<[u32; 3]>) -> Self {
+        build::build(triangles, Self::place(triangles, resolution, NESTED_DENSITY), false)
+    }
+
+    /// Where an outermost grid is, of the given resolution or with `density` voxels to a triangle.
+    fn place(triangles: &Triangles, resolution: Option<[u32; 3]>, density: f64) -> Level {
         let bounds = triangles.bounds().expect("there are triangles");
         let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
         // A flat scene gets a box with some depth, so that a voxel has a volume.
         let thickness = padding(&bounds, extent.max_element() * PADDING / MOST_VOXELS);
         let (min, max) = (bounds.min.as_dvec3() - thickness, bounds.max.as_dvec3() + thickness);
-        let density = if options.nested { NESTED_DENSITY } else { UNIFORM_DENSITY };
-        let resolution = match options.resolution {
+        let resolution = match resolution {
             Some(resolution) => resolution.map(|n| n.clamp(1, MOST_VOXELS as u32)),
-            None => resolution(max - min, density * triangles.len() as f64),
+            None => self::resolution(max - min, density * triangles.len() as f64),
         };
-        build::build(triangles, Level::new(min, max, resolution, &bounds), options.nested)
+        Level::new(min, max, resolution, &bounds)
     }
 
     /// Voxels along x, y and z of the outermost grid.
@@ -115,6 +133,42 @@ impl Grid {
                 None => return self.cell(content),
             }
         }
+    }
+
+    /// A plain uniform grid of about so many voxels.
+    pub(crate) fn uniform(triangles: &Triangles, voxels: f64) -> Self {
+        let bounds = triangles.bounds().expect("there are triangles");
+        let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
+        let resolution = Some(resolution(extent, voxels));
+        Self::new(triangles, GridOptions { resolution, nested: false, lazy: false })
+    }
+
+    /// Where the voxels of the outermost grid are.
+    pub(crate) fn outermost(&self) -> &Level {
+        &self.levels[0]
+    }
+
+    /// What an outermost voxel that is not divided lists; opaque triangles first, in ascending order.
+    #[inline(always)]
+    pub(crate) fn listed(&self, index: usize) -> Cell {
+        self.cell(self.voxels[index])
+    }
+
+    /// Number of lists.
+    fn list_count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// The number of the list of an outermost voxel, if it holds anything and is not divided.
+    #[inline(always)]
+    fn list_of(&self, index: usize) -> Option<usize> {
+        self.voxels[index].list()
+    }
+
+    /// The part of a ray that is in the grid.
+    #[inline]
+    pub(crate) fn clip(&self, ray: &Ray) -> Clip {
+        clip(ray, self.min, self.max)
     }
 
     /// The list of a voxel that is not divided.

@@ -10,10 +10,11 @@ mod jittered;
 mod model;
 mod random;
 
-use model::Model;
+use model::{Model, Purpose};
 use random::Random;
 
 use super::{Draft, SceneError, memory};
+use crate::geometry::surface::Deviation;
 
 /// The scenes' names.
 pub const NAMES: &[&str] = &["jittered-sparse", "jittered-dense", "drum", "chair-room"];
@@ -72,7 +73,7 @@ pub fn draft_at(name: &str, tessellation: f64) -> Result<Draft, SceneError> {
             let density = density(describe, tessellation);
             let count = counted(describe, density);
             check_memory(name, count)?;
-            let mut model = Model::new(name, density, false);
+            let mut model = Model::new(name, density, Purpose::Make);
             describe(&mut model);
             Ok(model.draft)
         }
@@ -96,6 +97,20 @@ pub fn triangle_count(name: &str, tessellation: f64) -> Option<u64> {
     }
 }
 
+/// How far the triangles of [`draft_at`] are from the curved surfaces they stand for, in the scene's unit;
+/// `None` if no scene has that name, or its surfaces are flat.
+///
+/// # Panics
+/// If the tessellation is not positive.
+#[must_use]
+pub fn deviation(name: &str, tessellation: f64) -> Option<Deviation> {
+    assert!(tessellation > 0.0, "tessellation {tessellation} is not positive");
+    let describe = description(name)?;
+    let mut model = Model::new("", density(describe, tessellation), Purpose::Measure);
+    describe(&mut model);
+    Some(model.deviation)
+}
+
 /// What puts a scene of surfaces together.
 type Describe = fn(&mut Model);
 
@@ -108,7 +123,7 @@ fn description(name: &str) -> Option<Describe> {
 }
 
 fn counted(describe: Describe, density: f64) -> u64 {
-    let mut model = Model::new("", density, true);
+    let mut model = Model::new("", density, Purpose::Count);
     describe(&mut model);
     model.count
 }

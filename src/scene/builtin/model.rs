@@ -1,24 +1,38 @@
 //! A scene while it is put together from surfaces, at any tessellation.
 //!
-//! The same description is run twice: once only to count triangles, once to make them.
+//! The same description is run more than once: only to count triangles, to make them, and to measure how
+//! far they are from the surfaces.
 
 use glam::{DAffine3, DMat3, DVec2, DVec3, Vec3};
 
 use crate::geometry::surface::{
-    Mesh, Path, Resolution, Revolution, SecondDerivatives, Surface, Topology, Tube,
+    Deviation, Mesh, Path, Resolution, Revolution, SecondDerivatives, Surface, Topology, Tube,
     cosine_and_sine, tessellate, triangle_count,
 };
 use crate::scene::{Draft, DraftTriangle, Material};
 
-/// Where triangles go, or are only counted.
+/// Where triangles go, or are only counted or measured.
 pub(super) struct Model {
-    /// The scene so far; without triangles when counting.
+    /// The scene so far; without triangles unless they are made.
     pub(super) draft: Draft,
     /// Triangles so far.
     pub(super) count: u64,
+    /// How far they are from the surfaces, if that is measured.
+    pub(super) deviation: Deviation,
     /// Factor on every resolution, along each parameter.
     density: f64,
-    counting: bool,
+    purpose: Purpose,
+}
+
+/// What a description is run for, besides counting triangles.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// Nothing.
+    Count,
+    /// The triangles themselves.
+    Make,
+    /// Their distance from the surfaces.
+    Measure,
 }
 
 /// A material of a [`Model`].
@@ -30,9 +44,9 @@ pub(super) type Run<'a> = (&'a [(f64, f64)], usize);
 
 impl Model {
     /// An empty model whose resolutions are multiplied by `density`.
-    pub(super) fn new(name: &str, density: f64, counting: bool) -> Self {
+    pub(super) fn new(name: &str, density: f64, purpose: Purpose) -> Self {
         let draft = Draft { name: name.to_owned(), ..Draft::default() };
-        Self { draft, count: 0, density, counting }
+        Self { draft, count: 0, deviation: Deviation::default(), density, purpose }
     }
 
     /// Adds a material.
@@ -52,8 +66,10 @@ impl Model {
         let scaled = |cells: usize| (cells as f64 * self.density).round() as usize;
         let resolution = Resolution { u: scaled(u), v: scaled(v) };
         self.count += triangle_count(surface, resolution);
-        if !self.counting {
-            self.mesh(&tessellate(surface, resolution), material, place);
+        match self.purpose {
+            Purpose::Count => {}
+            Purpose::Make => self.mesh(&tessellate(surface, resolution), material, place),
+            Purpose::Measure => self.deviation += Deviation::of(surface, resolution, place),
         }
     }
 

@@ -1,0 +1,160 @@
+//! Shadow methods side by side: what each takes to prepare, and a ray, cold and warm.
+//!
+//! The shadow queries of a picture are recorded once and asked of every method, over the grid with the exact
+//! test, in one thread. The first pass prepares what is prepared when it is first asked for; afterwards
+//! all methods take turns, and of each the median counts. All must give the same answers. *Pays after* is
+//! the number of rays a light beyond which build and first pass are won back, compared with `trace`.
+//!
+//! `cargo bench --bench methods`, and `-- NAME WxH` for scenes whose names hold NAME, and another size; the
+//! real scenes are looked for in `UMBRA_SCENES` or `../shared/scenes`.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use umbra::measure::recording::Recording;
+use umbra::occlusion::{Backend, BuildOptions, Test, build};
+use umbra::render::{Order, Progress, Settings};
+use umbra::scene::{Scene, load};
+use umbra::shadow::{Combination, Method, Prepared, VerdictKind, prepare};
+
+/// Passes over all rays of each method, the first apart.
+const PASSES: usize = 5;
+
+const SCENES: [&str; 8] = [
+    "jittered-sparse",
+    "jittered-dense",
+    "drum",
+    "chair-room",
+    "scenes/stadium.toml",
+    "sponza.glb",
+    "delft.obj",
+    "bigtujunga.glb",
+];
+
+/// Every memory alone, every verdict alone, and every verdict before the paper's best memory.
+fn combinations() -> Vec<Combination> {
+    let mut all: Vec<Combination> = Method::ALL.map(Combination::from).to_vec();
+    all.extend(VerdictKind::ALL.map(Combination::from));
+    let before_a_memory =
+        |kind| Combination { method: Method::CacheTree, ..Combination::from(kind) };
+    all.extend(VerdictKind::ALL.map(before_a_memory));
+    all
+}
+
+/// A built-in scene, one of this repository, or a real one.
+fn find(name: &str) -> Option<PathBuf> {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let real = std::env::var_os("UMBRA_SCENES")
+        .map_or_else(|| here.join("../shared/scenes"), PathBuf::from);
+    match name.rsplit_once('.') {
+        None => Some(PathBuf::from(name)),
+        Some(_) => [here.join(name), real.join(name)].into_iter().find(|path| path.is_file()),
+    }
+}
+
+struct Row<'a> {
+    name: Combination,
+    prepared: Box<dyn Prepared + 'a>,
+    build: f64,
+    first: f64,
+    passes: Vec<f64>,
+}
+
+impl Row<'_> {
+    fn median(&self) -> f64 {
+        let mut passes = self.passes.clone();
+        passes.sort_by(f64::total_cmp);
+        passes[passes.len() / 2]
+    }
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let done = work();
+    (done, start.elapsed().as_secs_f64())
+}
+
+fn measure(scene: &Scene, settings: &Settings) {
+    let recording =
+        Recording::of(scene, settings, &Progress::default()).expect("settings are good");
+    let rays = recording.queries().len();
+    let engine = build(Backend::Grid, Test::Exact, &scene.triangles, &BuildOptions::default());
+    let engine = engine.expect("the grid is always there");
+    let mut expected = None;
+    let mut rows: Vec<Row<'_>> = combinations()
+        .into_iter()
+        .map(|name| {
+            let (prepared, build) =
+                timed(|| prepare(name, scene, &*engine).expect("the combination makes sense"));
+            let (answers, first) = timed(|| recording.answers(&*prepared));
+            assert!(*expected.get_or_insert_with(|| answers.clone()) == answers, "{name} differs");
+            Row { name, prepared, build, first, passes: Vec::new() }
+        })
+        .collect();
+    for pass in 0..PASSES {
+        for turn in 0..rows.len() {
+            let which = (turn + pass) % rows.len();
+            let row = &mut rows[which];
+            row.passes.push(timed(|| recording.answers(&*row.prepared)).1);
+        }
+    }
+    let blocked = expected.iter().flatten().filter(|blocked| **blocked).count();
+    println!(
+        "\n{}: {} triangles, {} lights, {rays} rays, {:.1} % blocked\n",
+        scene.name,
+        scene.triangles.len(),
+        scene.lights.len(),
+        100.0 * blocked as f64 / rays as f64,
+    );
+    println!(
+        "| method | build, s | first pass, ns a ray | then, ns a ray | of trace | pays after, rays a light | MiB |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    let trace = rows[0].median();
+    for row in &rows {
+        let (each, saved) = (|seconds: f64| seconds * 1e9 / rays as f64, trace - row.median());
+        let invested = row.build + (row.first - row.median()).max(0.0);
+        let pays = match row.name == Combination::default() || saved <= 0.0 {
+            true => "never".to_owned(),
+            false => {
+                format!("{:.0}", invested / saved * rays as f64 / scene.lights.len() as f64)
+            }
+        };
+        println!(
+            "| `{}` | {:.3} | {:.0} | {:.0} | {:.2} | {} | {:.1} |",
+            row.name,
+            row.build,
+            each(row.first),
+            each(row.median()),
+            row.median() / trace,
+            if row.name == Combination::default() { "" } else { &pays },
+            row.prepared.memory() as f64 / f64::from(1 << 20),
+        );
+    }
+}
+
+fn parse_size(word: &str) -> Option<(u32, u32)> {
+    let (width, height) = word.split_once('x')?;
+    Some((width.parse().ok()?, height.parse().ok()?))
+}
+
+fn main() {
+    let words: Vec<String> =
+        std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let mut sizes = words.iter().filter_map(|word| parse_size(word));
+    let names: Vec<&String> = words.iter().filter(|word| parse_size(word).is_none()).collect();
+    let (width, height) = sizes.next().unwrap_or((320, 240));
+    let settings = Settings { width, height, order: Order::Tiles, ..Settings::default() };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    for name in SCENES {
+        if !names.is_empty() && !names.iter().any(|wanted| name.contains(*wanted)) {
+            continue;
+        }
+        let Some(path) = find(name) else {
+            eprintln!("*** NOT MEASURED: {name} is absent; set UMBRA_SCENES ***");
+            continue;
+        };
+        let scene = load(path.to_str().expect("scene names are text")).expect("it loads");
+        pool.install(|| measure(&scene, &settings));
+    }
+}

@@ -1,0 +1,131 @@
+//! The grid that is divided where rays come loses nothing, and divides nothing else.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{Aim, Random, soup, sphere};
+use glam::Vec3;
+use umbra::geometry::{Ray, Triangle, Triangles};
+use umbra::occlusion::{
+    Backend, BuildOptions, Cell, Grid, GridOptions, LazyGrid, LeftOut, Occlusion, Tally, Test,
+    Visit, Walk, build,
+};
+
+const LAZY: GridOptions = GridOptions { resolution: None, nested: true, lazy: true };
+
+/// A small ball of many triangles and a few large ones far around it.
+fn teapot_in_a_stadium() -> Vec<Triangle> {
+    let mut mesh = sphere(Vec3::new(0.2, 0.1, 0.0), 0.5, 40);
+    mesh.extend(soup(40, 1.0, 3).iter().map(|corners| corners.map(|corner| corner * 30.0)));
+    mesh
+}
+
+fn triangles(mesh: &[Triangle]) -> Arc<Triangles> {
+    Arc::new(mesh.iter().copied().collect())
+}
+
+fn engine(triangles: &Arc<Triangles>, grid: GridOptions) -> Box<dyn Occlusion> {
+    let options = BuildOptions { grid, ..BuildOptions::default() };
+    build(Backend::Grid, Test::Exact, triangles, &options).unwrap()
+}
+
+#[test]
+fn it_answers_like_the_grid_that_is_divided_beforehand() {
+    for mesh in [teapot_in_a_stadium(), soup(3000, 0.1, 4), soup(300, 1.0, 5)] {
+        let triangles = triangles(&mesh);
+        let (eager, lazy) = (engine(&triangles, GridOptions::default()), engine(&triangles, LAZY));
+        for aim in Aim::ALL {
+            let mut random = Random(9);
+            for _ in 0..3000 {
+                let ray = aim.ray(&mesh, &mut random);
+                let tally = &mut Tally::default();
+                assert_eq!(lazy.occluded(&ray, tally), eager.occluded(&ray, tally), "{ray:?}");
+                assert_eq!(lazy.nearest(&ray, tally), eager.nearest(&ray, tally), "{ray:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn threads_that_come_to_a_voxel_at_once_get_the_same_answers() {
+    let mesh = teapot_in_a_stadium();
+    let triangles = triangles(&mesh);
+    let mut random = Random(12);
+    let rays: Vec<Ray> = (0..4000).map(|_| Aim::Random.ray(&mesh, &mut random)).collect();
+    let asked = |engine: &dyn Occlusion| -> Vec<bool> {
+        rays.iter().map(|ray| engine.occluded(ray, &mut Tally::default())).collect()
+    };
+    let expected = asked(&*engine(&triangles, GridOptions::default()));
+    for _ in 0..20 {
+        let lazy = engine(&triangles, LAZY);
+        std::thread::scope(|scope| {
+            let workers: Vec<_> = (0..4).map(|_| scope.spawn(|| asked(&*lazy))).collect();
+            for worker in workers {
+                assert!(worker.join().unwrap() == expected);
+            }
+        });
+    }
+}
+
+/// Counts what it is shown.
+struct Counter(u64);
+
+impl Visit for Counter {
+    fn visit(&mut self, _: Cell, triangles: &[u32]) -> std::ops::ControlFlow<()> {
+        self.0 += triangles.len() as u64;
+        std::ops::ControlFlow::Continue(())
+    }
+
+    fn end(&self) -> f32 {
+        f32::INFINITY
+    }
+}
+
+#[test]
+fn a_voxel_is_divided_on_the_first_visit_and_not_before() {
+    let triangles = triangles(&teapot_in_a_stadium());
+    let grid = LazyGrid::new(&triangles, LAZY);
+    assert_eq!(grid.divided_count(), 0);
+    let (far, near) = (Vec3::new(25.0, 25.0, 25.0), Vec3::new(3.0, 0.1, 0.0));
+    grid.walk(&Ray::between(far, far + Vec3::X), &mut Counter(0));
+    assert_eq!(grid.divided_count(), 0, "nothing is crowded there");
+    let before = grid.memory();
+    let through_the_ball = Ray::between(near, Vec3::new(-3.0, 0.1, 0.0));
+    let mut first = Counter(0);
+    grid.walk(&through_the_ball, &mut first);
+    let divided = grid.divided_count();
+    assert!(divided > 0 && grid.memory() > before);
+    let mut second = Counter(0);
+    grid.walk(&through_the_ball, &mut second);
+    assert_eq!((grid.divided_count(), second.0), (divided, first.0));
+
+    // What a uniform grid cannot: few of the ball's triangles are met.
+    let uniform = Grid::new(&triangles, GridOptions { nested: false, ..GridOptions::default() });
+    let mut all = Counter(0);
+    uniform.walk(&through_the_ball, &mut all);
+    assert!(10 * second.0 < all.0, "{} of {}", second.0, all.0);
+}
+
+#[test]
+fn a_ray_that_was_tested_against_one_cell_still_meets_the_others() {
+    // Cells are what mailboxes note: those of divided voxels must not be taken for their neighbours.
+    let mesh = teapot_in_a_stadium();
+    let triangles = triangles(&mesh);
+    let lazy = engine(&triangles, LAZY);
+    let mut random = Random(21);
+    let order = lazy.order().len() as u32;
+    for _ in 0..3000 {
+        let ray = Aim::Random.ray(&mesh, &mut random);
+        let start = random.below(order as usize) as u32;
+        let cell = Cell { start, end: (start + 1 + random.below(40) as u32).min(order) };
+        let tally = &mut Tally::default();
+        let mut left_out = LeftOut::new(triangles.opaque_count(), false);
+        left_out.begin(None);
+        if lazy.occluder_in(cell, &ray, tally).is_none() {
+            left_out.note_cell(cell);
+        }
+        let found = lazy.occluder_except(&ray, None, &mut left_out, tally).is_some();
+        assert_eq!(found, lazy.occluded(&ray, tally), "{ray:?} {cell:?}");
+    }
+}
