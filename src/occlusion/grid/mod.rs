@@ -60,6 +60,20 @@ impl Default for GridOptions {
     }
 }
 
+impl GridOptions {
+    /// A plain uniform grid of about so many voxels, as near to cubes as the box of the triangles allows.
+    ///
+    /// # Panics
+    /// Without triangles.
+    #[must_use]
+    pub fn uniform(triangles: &Triangles, voxels: usize) -> Self {
+        let bounds = triangles.bounds().expect("there are triangles");
+        let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
+        let resolution = Some(resolution(extent, voxels as f64));
+        Self { resolution, nested: false, lazy: false }
+    }
+}
+
 /// A grid over the triangles' box, and grids in its crowded voxels.
 pub struct Grid {
     min: DVec3,
@@ -133,14 +147,6 @@ impl Grid {
                 None => return self.cell(content),
             }
         }
-    }
-
-    /// A plain uniform grid of about so many voxels.
-    pub(crate) fn uniform(triangles: &Triangles, voxels: f64) -> Self {
-        let bounds = triangles.bounds().expect("there are triangles");
-        let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
-        let resolution = Some(resolution(extent, voxels));
-        Self::new(triangles, GridOptions { resolution, nested: false, lazy: false })
     }
 
     /// Where the voxels of the outermost grid are.
