@@ -172,6 +172,30 @@ fn embree_answers_within_its_bounds_on_every_instruction_set_and_quality() {
 }
 
 #[test]
+fn a_triangle_whose_volumes_overflow_is_decided_as_embree_decides_it() {
+    // One volume is −∞ and one ∞, their sum is no number, and Embree's `>=` is true of that.
+    let mesh = [[
+        Vec3::new(-2.679_826_8e17, -0.277_504_92, -4.192_926e-22),
+        Vec3::new(-3.204_253_3e-18, -1.384_686_8e-36, 2.207_024_7e-20),
+        Vec3::new(-3.519_515e13, 2.275_337e-30, -0.001_661_128),
+    ]];
+    let ray = Ray {
+        origin: Vec3::new(-1.277_144_95e-17, 1.849_084_9e-20, -0.178_874_88),
+        direction: Vec3::new(-1.129_685e-17, 1.757_868_3e22, 4.209_194e-15),
+        end: 4.511_72e14,
+    };
+    let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());
+    for (isa, arithmetic) in kernels() {
+        let options = EmbreeOptions { isa: Some(isa), ..EmbreeOptions::default() };
+        let [_, upper] = bounds(&triangles, true, arithmetic);
+        let tally = &mut Tally::default();
+        let theirs = embree(&triangles, true, options).occluded(&ray, tally);
+        assert_eq!(upper.occluded(&ray, tally), theirs, "{isa}");
+        assert!(theirs, "{isa}: or this shows nothing");
+    }
+}
+
+#[test]
 fn our_tests_in_each_arithmetic_lie_within_the_bounds_too() {
     let mesh = soup(800, 0.2, 24);
     let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());

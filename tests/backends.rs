@@ -126,6 +126,7 @@ fn wide_and_scalar_lanes_give_the_same_bits() {
     fn compare<T: TriangleTest>(test: Test) {
         let mesh = soup(64, 0.6, 6);
         let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());
+        let slack = triangles.slack();
         for arithmetic in Arithmetic::ALL.into_iter().filter(|a| a.is_available()) {
             let options = BuildOptions { arithmetic: Some(arithmetic), ..Default::default() };
             let brute = build(Backend::Brute, test, &triangles, &options).unwrap();
@@ -135,9 +136,15 @@ fn wide_and_scalar_lanes_give_the_same_bits() {
                     let ray = aim.ray(&mesh, &mut random);
                     for (id, triangle) in mesh.iter().enumerate() {
                         let twin = match arithmetic {
-                            Arithmetic::Sse => meets::<T, Scalar<false, false>>(&ray, triangle),
-                            Arithmetic::Avx2 => meets::<T, Scalar<true, false>>(&ray, triangle),
-                            Arithmetic::Avx512 => meets::<T, Scalar<true, true>>(&ray, triangle),
+                            Arithmetic::Sse => {
+                                meets::<T, Scalar<false, false>>(&ray, triangle, slack)
+                            }
+                            Arithmetic::Avx2 => {
+                                meets::<T, Scalar<true, false>>(&ray, triangle, slack)
+                            }
+                            Arithmetic::Avx512 => {
+                                meets::<T, Scalar<true, true>>(&ray, triangle, slack)
+                            }
                         };
                         let wide = brute.meets(id as u32, &ray, &mut Tally::default());
                         assert_eq!(wide, twin, "{test} {arithmetic:?} {ray:?} {triangle:?}");

@@ -10,6 +10,7 @@ use common::command::{TRIANGLE, refused, run, said};
 use common::{Aim, Random, soup, sphere};
 use glam::Vec3;
 use umbra::exact::Verdict;
+use umbra::exact::adversary::{self, Class};
 use umbra::geometry::lanes::Arithmetic;
 use umbra::geometry::{Ray, Triangle, Triangles};
 use umbra::measure::compare::{Claim, CompareError, Comparison, Kind, Report, compare};
@@ -18,7 +19,7 @@ use umbra::measure::recording::Recording;
 use umbra::occlusion::{Backend, Test};
 use umbra::render::{Progress, RecordedQuery, Settings};
 use umbra::scene::{Scene, builtin};
-use umbra::shadow::{Path as RayPath, ShadowQuery};
+use umbra::shadow::{Combination, Path as RayPath, ShadowQuery};
 
 /// A scene of these triangles, where they are.
 fn scene_of(mesh: &[Triangle]) -> Scene {
@@ -153,6 +154,28 @@ fn every_embree_variant_of_this_cpu_is_explained_on_hard_rays() {
         }
     }
     assert!(wrong.iter().all(|count| *count > 100), "only {wrong:?}: the rays are not hard");
+}
+
+/// Rays of the adversary's class and their triangles, each ray as often as fills a packet: coherent packets take
+/// their rays to be alike, and these are of all scales.
+fn adversarial(class: Class) -> (Scene, Recording) {
+    let queries = (0..).map(|index| adversary::query(class, index));
+    // Loaders drop what is not finite.
+    let finite = queries.filter(|(_, triangle)| triangle.iter().all(|corner| corner.is_finite()));
+    let (rays, mesh): (Vec<Ray>, Vec<Triangle>) = finite.take(48).unzip();
+    let rays: Vec<Ray> = rays.into_iter().flat_map(|ray| [ray; 16]).collect();
+    (scene_of(&mesh), recording_of(&rays))
+}
+
+#[test]
+fn every_contender_is_explained_on_the_adversarys_queries() {
+    let trace = vec![Combination::default()];
+    let choice = Choice { methods: trace, ..Choice::everything() };
+    for &class in Class::ALL {
+        let (scene, recording) = adversarial(class);
+        let report = compared(&scene, &recording, &choice);
+        assert_eq!(report.failure(), None, "{}: {}", class.name(), report.listing(5));
+    }
 }
 
 #[test]
@@ -349,7 +372,7 @@ fn the_command_writes_all_it_is_asked_for() {
     let csv = fs::read_to_string(folder.path().join("all.csv")).unwrap();
     assert!(csv.starts_with("contender,pixel_x,pixel_y,light,"), "{csv}");
     let picture = image::open(folder.path().join("all.png")).unwrap();
-    assert!(picture.width() == 40 && picture.height() > 30, "a legend below");
+    assert!(picture.width() == 640 && picture.height() > 480, "squares, and a legend below");
     let stats = fs::read(folder.path().join("all.json")).unwrap();
     let stats: serde_json::Value = serde_json::from_slice(&stats).unwrap();
     assert_eq!(stats["contenders"].as_array().unwrap().len(), 4);

@@ -15,8 +15,8 @@ use umbra::occlusion::{Brute, Engine, Occlusion, Tally};
 /// Queries of each class that are held against the oracle.
 const ORACLE_QUERIES: u64 = 4_000;
 
-/// Queries of each class in the short campaign: with all classes, more than a million.
-const CAMPAIGN_QUERIES: u64 = 50_000;
+/// Queries of each class in the campaign; `umbra certify` makes as many as one likes.
+const CAMPAIGN_QUERIES: u64 = 1_000_000;
 
 fn any_class() -> impl Strategy<Value = Class> {
     prop::sample::select(Class::ALL)

@@ -1,6 +1,8 @@
 //! The command line: arguments, progress, printing.
 
+mod certify;
 mod compare;
+mod extremes;
 mod failure;
 mod options;
 mod paper;
@@ -28,6 +30,7 @@ Examples:
   umbra query chair-room --rays rays.csv -o blocked.csv
   umbra tradeoff chair-room --html tradeoff.html
   umbra paper --quick
+  umbra certify --seconds 60
   umbra scene drum -o drum.glb";
 
 /// Does light reach this point? Exact and fast occlusion queries for triangle scenes.
@@ -45,6 +48,8 @@ enum Command {
     Query(query::Query),
     Tradeoff(tradeoff::Tradeoff),
     Paper(paper::Paper),
+    Certify(certify::Certify),
+    Extremes(extremes::Extremes),
     Scene(scene::SceneFile),
 }
 
@@ -57,6 +62,8 @@ pub fn main() -> ExitCode {
         Ok(Cli { command: Command::Query(query) }) => query.run(),
         Ok(Cli { command: Command::Tradeoff(tradeoff) }) => tradeoff.run(),
         Ok(Cli { command: Command::Paper(paper) }) => paper.run(),
+        Ok(Cli { command: Command::Certify(certify) }) => certify.run(),
+        Ok(Cli { command: Command::Extremes(extremes) }) => extremes.run(),
         Ok(Cli { command: Command::Scene(scene) }) => scene.run(),
         Err(error) => match error.kind() {
             // A closed pipe is no failure.

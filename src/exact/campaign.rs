@@ -1,12 +1,13 @@
 //! A campaign: the stages held against each other on many hard queries.
 //!
 //! Each query is decided by the pipeline (filter, f64, expansions) and by expansions alone; one in
-//! [`ORACLE_SAMPLE`] also by the oracle. Queries depend on class and index only, so a campaign can be cut
-//! into ranges and repeated anywhere.
+//! [`ORACLE_SAMPLE`] also by the oracle. Queries depend on class
+//! and index only, so a campaign can be cut into ranges and repeated anywhere.
 
 use std::ops::{Add, Range};
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::adversary::{Class, query};
 use super::certified::{Stage, decide, verdict_by_expansions};
@@ -17,10 +18,10 @@ use crate::geometry::lanes::Scalar;
 use crate::geometry::{Ray, Triangle};
 
 /// One query in this many is also put to the oracle, which takes microseconds.
-pub const ORACLE_SAMPLE: u64 = 1000;
+pub const ORACLE_SAMPLE: u64 = 100;
 
 /// What a campaign found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Summary {
     /// Queries made.
     pub queries: u64,

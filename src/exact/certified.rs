@@ -25,7 +25,7 @@ use glam::{DVec3, Vec3Swizzles};
 
 use super::expansion::{Expansion, difference};
 use super::oracle::Verdict;
-use crate::geometry::{Ray, Triangle};
+use crate::geometry::{Ray, Triangle, is_finite};
 
 /// Which arithmetic settled a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -96,7 +96,7 @@ pub fn verdict_by_expansions(ray: &Ray, triangle: &Triangle) -> Verdict {
 }
 
 fn is_valid(ray: &Ray, triangle: &Triangle) -> bool {
-    ray.is_valid() && triangle.iter().all(|corner| corner.is_finite())
+    ray.is_valid() && is_finite(triangle)
 }
 
 /// The verdict from the signs of the edges, and if needed those of start and stop.

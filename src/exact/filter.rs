@@ -106,7 +106,7 @@ impl TriangleTest for Exact {
         Claims { certain, open: Self::all::<L>() & !(certain | misses) }
     }
 
-    fn settle(ray: &Ray, triangle: &Triangle) -> bool {
+    fn settle(ray: &Ray, triangle: &Triangle, _: f64) -> bool {
         certified::blocks(ray, triangle)
     }
 }

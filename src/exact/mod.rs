@@ -14,6 +14,7 @@ pub mod certified;
 pub mod expansion;
 pub mod filter;
 pub mod oracle;
+pub(crate) mod random;
 
 pub use certified::{Stage, blocks, decide};
 pub use filter::Exact;

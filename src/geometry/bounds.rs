@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-/// A closed axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A closed axis-aligned box; by default, the zero point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// Least coordinates.
     pub min: Vec3,
@@ -41,6 +41,12 @@ impl Bounds {
     #[must_use]
     pub fn diagonal(&self) -> f64 {
         (self.max.as_dvec3() - self.min.as_dvec3()).length()
+    }
+
+    /// The largest magnitude of a coordinate.
+    #[must_use]
+    pub fn largest_coordinate(&self) -> f32 {
+        self.min.abs().max(self.max.abs()).max_element()
     }
 
     /// Whether the point is in the closed box.

@@ -9,4 +9,4 @@ mod triangles;
 
 pub use bounds::Bounds;
 pub use ray::Ray;
-pub use triangles::{Triangle, TriangleId, Triangles};
+pub use triangles::{Triangle, TriangleId, Triangles, is_finite};

@@ -3,12 +3,19 @@
 use glam::{Vec3, Vec3A};
 
 use super::Bounds;
+use super::intersect::vicinity;
 
 /// Index of a triangle in [`Triangles`].
 pub type TriangleId = u32;
 
 /// The three corners of one triangle.
 pub type Triangle = [Vec3; 3];
+
+/// Whether no corner is infinite or NaN. Triangles that are not finite block nothing.
+#[must_use]
+pub fn is_finite(triangle: &Triangle) -> bool {
+    triangle.iter().all(|corner| corner.is_finite())
+}
 
 /// The triangles of a scene, opaque ones first.
 ///
@@ -19,6 +26,7 @@ pub struct Triangles {
     corners: Vec<[Vec3A; 3]>,
     opaque: u32,
     bounds: Option<Bounds>,
+    slack: f64,
 }
 
 impl Triangles {
@@ -38,7 +46,8 @@ impl Triangles {
         corners.extend(transparent.into_iter().map(pad));
         count(corners.len());
         let bounds = bounds(&corners);
-        Self { corners, opaque, bounds }
+        let slack = vicinity::slack(bounds.unwrap_or_default().largest_coordinate());
+        Self { corners, opaque, bounds, slack }
     }
 
     /// Number of triangles.
@@ -86,10 +95,18 @@ impl Triangles {
         Bounds::of(self.get(id))
     }
 
-    /// The box of all triangles; `None` if there are none.
+    /// The box of all triangles that are [finite](is_finite); `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.bounds
+    }
+
+    /// How near a ray must come to one of these triangles for a hit by a test that rounds to count: some
+    /// roundings of the largest coordinate.
+    #[must_use]
+    #[inline]
+    pub fn slack(&self) -> f64 {
+        self.slack
     }
 
     /// Bytes held.
@@ -107,7 +124,8 @@ impl FromIterator<Triangle> for Triangles {
 }
 
 fn bounds(corners: &[[Vec3A; 3]]) -> Option<Bounds> {
-    let mut corners = corners.iter().flatten().copied();
+    let finite = corners.iter().filter(|corners| corners.iter().all(|corner| corner.is_finite()));
+    let mut corners = finite.flatten().copied();
     let first = corners.next()?;
     let (min, max) =
         corners.fold((first, first), |(min, max), corner| (min.min(corner), max.max(corner)));

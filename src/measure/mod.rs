@@ -2,6 +2,7 @@
 
 pub mod compare;
 pub mod contender;
+pub mod extremes;
 mod grouped;
 pub mod paper;
 pub mod recording;

@@ -23,14 +23,10 @@ pub struct Bvh2 {
 
 impl Bvh2 {
     /// Builds with obvhs' medium preset.
-    ///
-    /// # Panics
-    /// Without triangles.
     #[must_use]
     pub fn new(triangles: &Triangles) -> Self {
-        let space = CullingSpace::new(&triangles.bounds().expect("there are triangles"));
-        let boxes: Vec<_> =
-            (0..triangles.len() as u32).map(|id| space.map(&triangles.bounds_of(id))).collect();
+        let space = CullingSpace::new(triangles);
+        let boxes = space.boxes(triangles);
         let tree = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
         Self { tree, space }
     }

@@ -48,8 +48,9 @@ pub(super) fn clip(ray: &Ray, min: DVec3, max: DVec3) -> Clip {
 /// How far a culler must look beyond exact geometry: `fraction` of its own resolution, and at least
 /// what f32 tests may err by on coordinates of this size.
 pub(super) fn padding(bounds: &Bounds, resolution: f64) -> f64 {
-    /// The own-box test of f32 hits allows 16 roundings of origin and corner each; twice that.
+    /// Hits of tests that round count within 48 roundings of a triangle (`Triangles::slack`); a third more.
     const ROUNDINGS: f64 = 64.0 * f32::EPSILON as f64;
-    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-    resolution.max(ROUNDINGS * f64::from(largest)).max(f64::MIN_POSITIVE)
+    /// A scene that is one point needs some room too: far below the least f32, and its cube is no zero.
+    const LEAST: f64 = 1e-60;
+    resolution.max(ROUNDINGS * f64::from(bounds.largest_coordinate())).max(LEAST)
 }

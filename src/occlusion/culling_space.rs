@@ -15,12 +15,15 @@
 //!
 //! Together 10 · 2⁻²⁴ < 2⁻²⁰ = [`PADDING`]. (CWBVH quantises boxes outwards from the padded ones.)
 
+use std::collections::HashSet;
+
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::ray::Ray as CullingRay;
+use rayon::prelude::*;
 
 use super::clip::{Clip, clip, padding};
-use crate::geometry::{Bounds, Ray};
+use crate::geometry::{Bounds, Ray, Triangles, is_finite};
 
 /// See the table above.
 const PADDING: f64 = 1.0 / (1 << 20) as f64;
@@ -54,15 +57,30 @@ pub(super) enum Passage {
 }
 
 impl CullingSpace {
-    pub(super) fn new(bounds: &Bounds) -> Self {
+    /// The space of some triangles; of none, that of a point.
+    pub(super) fn new(triangles: &Triangles) -> Self {
+        let bounds = &triangles.bounds().unwrap_or_default();
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let side = (max - min).max_element();
         let pad = padding(bounds, PADDING * side);
         Self { min: min - pad, max: max + pad, scale: (side + 2.0 * pad).recip(), pad }
     }
 
+    /// The padded boxes of all triangles in culling space.
+    pub(super) fn boxes(&self, triangles: &Triangles) -> Vec<Aabb> {
+        // What is not finite blocks nothing; any box does.
+        let nowhere = Aabb { min: Vec3A::ZERO, max: Vec3A::ZERO };
+        let place = |id| {
+            let triangle = triangles.get(id);
+            if is_finite(&triangle) { self.map(&Bounds::of(triangle)) } else { nowhere }
+        };
+        let mut boxes: Vec<_> = (0..triangles.len() as u32).map(place).collect();
+        spread_copies(&mut boxes);
+        boxes
+    }
+
     /// The padded box in culling space.
-    pub(super) fn map(&self, bounds: &Bounds) -> Aabb {
+    fn map(&self, bounds: &Bounds) -> Aabb {
         let place = |corner: DVec3| Vec3A::from(((corner - self.min) * self.scale).as_vec3());
         Aabb {
             min: place(bounds.min.as_dvec3() - self.pad),
@@ -102,4 +120,43 @@ impl Culled {
     pub(super) fn limit(&self, end: f32) -> f32 {
         ((f64::from(end) - self.start) * self.length + 2.0 * MARGIN) as f32
     }
+}
+
+/// Widens boxes that are alike, each to another side, where there are very many: obvhs makes a chain of them, as deep as
+/// there are copies, in a time that grows with their square.
+fn spread_copies(boxes: &mut [Aabb]) {
+    /// So many copies are no trouble.
+    const FEW: usize = 64;
+    /// How much wider, in sides of the cube: enough that thousands of copies differ after rounding.
+    const SPREAD: f32 = 1.0 / 1024.0;
+
+    let mut keys: Vec<u64> = boxes.iter().map(key).collect();
+    keys.par_sort_unstable();
+    let many: HashSet<u64> =
+        keys.chunk_by(|a, b| a == b).filter(|run| run.len() > FEW).map(|run| run[0]).collect();
+    if many.is_empty() {
+        return;
+    }
+    for (id, bounds) in boxes.iter_mut().enumerate() {
+        if many.contains(&key(bounds)) {
+            let bits = mixed(id as u64);
+            let part = |shift: u32| ((bits >> shift) & 0xffff) as f32 / 65536.0;
+            let low = Vec3A::new(part(0), part(16), part(32));
+            bounds.min -= SPREAD * low;
+            bounds.max += SPREAD * (Vec3A::ONE - low);
+        }
+    }
+}
+
+/// A number that boxes which are alike share.
+fn key(bounds: &Aabb) -> u64 {
+    let corners = [bounds.min.to_array(), bounds.max.to_array()];
+    corners.as_flattened().iter().fold(0, |key, value| mixed(key ^ u64::from(value.to_bits())))
+}
+
+/// Scatters bits: the finalizer of SplitMix64.
+fn mixed(bits: u64) -> u64 {
+    let bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^ (bits >> 31)
 }

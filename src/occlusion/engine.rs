@@ -174,7 +174,10 @@ where
                 candidates &= candidates - 1;
                 let id = ids[lane as usize];
                 let certain = claims.certain & (1 << lane) != 0;
-                if (self.wanted)(id) && (certain || T::settle(self.ray, &self.triangles.get(id))) {
+                if (self.wanted)(id)
+                    && (certain
+                        || T::settle(self.ray, &self.triangles.get(id), self.triangles.slack()))
+                {
                     (self.hit)(id)?;
                 }
             }

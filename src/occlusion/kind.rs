@@ -119,13 +119,10 @@ pub enum BackendError {
     NotInEmbree(Test),
 }
 
-/// Builds a backend over the triangles.
+/// Builds a backend over the triangles; over none, one that nothing blocks.
 ///
 /// # Errors
 /// If the backend is not to be had here.
-///
-/// # Panics
-/// Without triangles.
 pub fn build(
     backend: Backend,
     test: Test,

@@ -17,10 +17,9 @@ pub trait Visit {
 
 /// A structure over triangles that only culls.
 ///
-/// The promise: every triangle that holds a point of the open segment is visited, for any valid ray
-/// of any length, direction and origin; more may be, and several times. Also every triangle whose
-/// own box the segment passes within a few roundings of the coordinates, provided the ray comes as
-/// near to the triangle's plane and edges: what a sound f32 test may still call a hit.
+/// The promise: every triangle that the closed segment comes within [`slack`](crate::geometry::Triangles::slack)
+/// of, along every axis, is visited, for any valid ray of any length, direction and origin; more may be, and
+/// several times. So tests that round lose no hit that counts, and the exact test none at all.
 pub trait Walk: Send + Sync + 'static {
     /// Whether any-hit queries get a copy of the walk of their own for each triangle test and each wide
     /// instruction set, with the test inlined; costs some seconds of compilation each.

@@ -4,13 +4,15 @@
 //! instruction set. What is defined is: its answer is "blocked" at most where some triangle passes the
 //! scalar test (upper bound), and at least where some triangle passes it and that triangle's own box
 //! passes Embree's box test (lower bound): box tests are monotone, so every box around that one is met too.
+//! Here the lower bound leaves out hits that are noise, where the ray does not come near the triangle
+//! (`vicinity`): our own engines do not count those, and cullers need not see them.
 //!
 //! [`AtLeast`] is the lower bound, as a test; a triangle that passes it proves that Embree says
 //! "blocked", which is what memories in front of Embree need. [`AtMost`] is the upper bound.
 
 use std::marker::PhantomData;
 
-use super::{Claims, RayLanes, TriangleTest};
+use super::{Claims, RayLanes, TriangleTest, vicinity};
 use crate::geometry::lanes::{Lanes, Scalar, Vector};
 use crate::geometry::{Bounds, Ray, Triangle};
 
@@ -24,12 +26,12 @@ impl<T: TriangleTest> TriangleTest for AtMost<T> {
         T::claims(ray, corners)
     }
 
-    fn settle(_: &Ray, _: &Triangle) -> bool {
+    fn settle(_: &Ray, _: &Triangle, _: f64) -> bool {
         true
     }
 }
 
-/// Passes where `T` and the own box pass: Embree's answer is "blocked" where any triangle passes.
+/// Passes where `T` and the own box pass and the ray comes near the triangle: Embree's answer is "blocked" where any triangle passes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AtLeast<T, B>(PhantomData<(T, B)>);
 
@@ -45,11 +47,13 @@ impl<T: TriangleTest, B: BoxTest> TriangleTest for AtLeast<T, B> {
         T::claims(ray, corners)
     }
 
-    fn settle(ray: &Ray, triangle: &Triangle) -> bool {
+    fn settle(ray: &Ray, triangle: &Triangle, slack: f64) -> bool {
         // Embree ignores triangles with larger coordinates (`FLT_LARGE`).
         const LARGEST: f32 = 1.844e18;
         let bounds = Bounds::of(*triangle);
-        bounds.min.abs().max(bounds.max.abs()).max_element() < LARGEST && B::passes(ray, &bounds)
+        bounds.largest_coordinate() < LARGEST
+            && B::passes(ray, &bounds)
+            && vicinity::meets(ray, triangle, slack)
     }
 }
 

@@ -2,8 +2,8 @@
 
 mod embree;
 mod moller;
-mod own_box;
 mod pluecker;
+pub(super) mod vicinity;
 mod watertight;
 
 pub use embree::{AtLeast, AtMost, BoxTest, FastBox, RobustBox};
@@ -58,14 +58,15 @@ pub trait TriangleTest: Copy + Default + Send + Sync + 'static {
     /// Tests as many triangles as `L` has lanes. The ray is valid ([`Ray::is_valid`]).
     fn claims<L: Lanes>(ray: &RayLanes<L>, corners: &[Vector<L>; 3]) -> Claims;
 
-    /// Decides a lane that [`claims`](Self::claims) left open.
-    fn settle(ray: &Ray, triangle: &Triangle) -> bool;
+    /// Decides a lane that [`claims`](Self::claims) left open. A test that rounds counts hits only where the
+    /// ray comes within the slack of the triangle: see [`Triangles::slack`](super::Triangles::slack).
+    fn settle(ray: &Ray, triangle: &Triangle, slack: f64) -> bool;
 }
 
 /// Whether the ray meets the triangle, by a test in the arithmetic of `L` (one lane is used).
 #[must_use]
-pub fn meets<T: TriangleTest, L: Lanes>(ray: &Ray, triangle: &Triangle) -> bool {
+pub fn meets<T: TriangleTest, L: Lanes>(ray: &Ray, triangle: &Triangle, slack: f64) -> bool {
     let corners = [triangle.map(glam::Vec3A::from)];
     let claims = T::claims::<L>(&RayLanes::new(ray), &L::gather(&corners, &[0]));
-    claims.certain & 1 != 0 || (claims.open & 1 != 0 && T::settle(ray, triangle))
+    claims.certain & 1 != 0 || (claims.open & 1 != 0 && T::settle(ray, triangle, slack))
 }

@@ -6,7 +6,7 @@
 //!
 //! Möller, Trumbore: Fast, Minimum Storage Ray/Triangle Intersection. Journal of Graphics Tools 2(1), 1997.
 
-use super::{Claims, RayLanes, TriangleTest, own_box};
+use super::{Claims, RayLanes, TriangleTest, vicinity};
 use crate::geometry::lanes::{Lanes, Vector, cross, dot, sub};
 use crate::geometry::{Ray, Triangle};
 
@@ -38,7 +38,7 @@ impl TriangleTest for Moller {
         Claims { certain: 0, open: L::bits(L::and(inside, within)) }
     }
 
-    fn settle(ray: &Ray, triangle: &Triangle) -> bool {
-        own_box::meets(ray, triangle)
+    fn settle(ray: &Ray, triangle: &Triangle, slack: f64) -> bool {
+        vicinity::meets(ray, triangle, slack)
     }
 }

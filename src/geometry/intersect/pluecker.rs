@@ -8,7 +8,7 @@
 //! Rasterization and Ray Casting. Graphics Interface 2012 (edge volumes); the arithmetic was read in
 //! Embree's source.
 
-use super::{Claims, RayLanes, TriangleTest, own_box};
+use super::{Claims, RayLanes, TriangleTest, vicinity};
 use crate::geometry::lanes::{Lanes, Vector, add, cross, dot, sub};
 use crate::geometry::{Ray, Triangle};
 
@@ -30,8 +30,9 @@ impl TriangleTest for Pluecker {
         let w = dot(cross(e2, add(v1, v2)), direction);
         let epsilon = L::splat(EDGE_EPSILON).mul(u.add(v).add(w).abs());
         let minus_epsilon = epsilon.flip_sign(L::splat(-1.0));
+        // Embree's `>=` is true of NaN, which volumes are that overflow; its `<=` is not.
         let inside =
-            L::or(minus_epsilon.less_equal(u.min(v).min(w)), u.max(v).max(w).less_equal(epsilon));
+            L::or(u.min(v).min(w).not_less(minus_epsilon), u.max(v).max(w).less_equal(epsilon));
         if L::bits(inside) == 0 {
             return Claims::default();
         }
@@ -44,8 +45,8 @@ impl TriangleTest for Pluecker {
         Claims { certain: 0, open: L::bits(open) }
     }
 
-    fn settle(ray: &Ray, triangle: &Triangle) -> bool {
-        own_box::meets(ray, triangle)
+    fn settle(ray: &Ray, triangle: &Triangle, slack: f64) -> bool {
+        vicinity::meets(ray, triangle, slack)
     }
 }
 

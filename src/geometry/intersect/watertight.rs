@@ -8,7 +8,7 @@
 //! Woop, Benthin, Wald: Watertight Ray/Triangle Intersection. Journal of Computer Graphics Techniques
 //! 2(1), 2013.
 
-use super::{Claims, RayLanes, TriangleTest, own_box};
+use super::{Claims, RayLanes, TriangleTest, vicinity};
 use crate::geometry::lanes::{Lanes, Scalar, Vector, sub};
 use crate::geometry::{Ray, Triangle};
 
@@ -89,7 +89,7 @@ impl TriangleTest for Watertight {
         Claims { certain: 0, open: L::bits(inside) }
     }
 
-    fn settle(ray: &Ray, triangle: &Triangle) -> bool {
+    fn settle(ray: &Ray, triangle: &Triangle, slack: f64) -> bool {
         let lanes = RayLanes::<Scalar<false, false>>::new(ray);
         let corners = triangle.map(|corner| corner.to_array().map(Scalar));
         let Sheared { corners: [a, b, c], edges } = Sheared::new(&lanes, &corners);
@@ -114,6 +114,6 @@ impl TriangleTest for Watertight {
         determinant > 0.0
             && distance > 0.0
             && distance < ray.end * determinant
-            && own_box::meets(ray, triangle)
+            && vicinity::meets(ray, triangle, slack)
     }
 }

@@ -100,6 +100,11 @@ impl<const RCP14: bool> Lanes for Avx<RCP14> {
         unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0) }
     }
     #[inline(always)]
+    fn not_less(self, other: Self) -> __m256 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm256_cmp_ps::<_CMP_NLT_UQ>(self.0, other.0) }
+    }
+    #[inline(always)]
     fn not_equal(self, other: Self) -> __m256 {
         // SAFETY: see the head of this file.
         unsafe { _mm256_cmp_ps::<_CMP_NEQ_UQ>(self.0, other.0) }

@@ -77,6 +77,8 @@ pub trait Lanes: Copy {
     fn less(self, other: Self) -> Self::Mask;
     /// `self <= other`; false with NaN.
     fn less_equal(self, other: Self) -> Self::Mask;
+    /// `!(self < other)`: `self >= other`, but true with NaN, as Embree compares.
+    fn not_less(self, other: Self) -> Self::Mask;
     /// `self != other`; true with NaN.
     fn not_equal(self, other: Self) -> Self::Mask;
     /// `yes` where the mask is set, `no` elsewhere.

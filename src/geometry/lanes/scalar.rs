@@ -80,6 +80,10 @@ impl<const FUSED: bool, const RCP14: bool> Lanes for Scalar<FUSED, RCP14> {
         self.0 <= other.0
     }
     #[inline(always)]
+    fn not_less(self, other: Self) -> bool {
+        self.0 >= other.0 || self.0.is_nan() || other.0.is_nan()
+    }
+    #[inline(always)]
     fn not_equal(self, other: Self) -> bool {
         self.0 != other.0
     }

@@ -93,6 +93,11 @@ impl Lanes for Sse {
         unsafe { _mm_cmple_ps(self.0, other.0) }
     }
     #[inline(always)]
+    fn not_less(self, other: Self) -> __m128 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm_cmpnlt_ps(self.0, other.0) }
+    }
+    #[inline(always)]
     fn not_equal(self, other: Self) -> __m128 {
         // SAFETY: see the head of this file.
         unsafe { _mm_cmpneq_ps(self.0, other.0) }

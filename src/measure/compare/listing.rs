@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use super::report::{bits, name_of};
 use super::{Disagreement, Report};
+use crate::exact::Verdict;
 
 /// The first line of the CSV.
 const COLUMNS: &str = "contender,pixel_x,pixel_y,light,kind,said,exact,triangle,explained,origin_x,origin_y,origin_z,direction_x,direction_y,direction_z,end,bits";
@@ -63,7 +64,11 @@ impl Report {
     fn describe(&self, found: &[&Disagreement], text: &mut String) {
         let Disagreement { pixel: (x, y), light, exact, ray, .. } = *found[0];
         let triangle = found.iter().find_map(|found| found.triangle);
-        let triangle = triangle.map_or(String::new(), |id| format!(" (triangle {id})"));
+        let triangle = match (triangle, exact) {
+            (None, _) => String::new(),
+            (Some(id), Verdict::Clear) => format!(", though triangle {id} is reported"),
+            (Some(id), _) => format!(", by triangle {id}"),
+        };
         let (exact, bits) = (name_of(exact), bits(&ray));
         let _ = writeln!(text, "pixel {x},{y} light {light}: {exact}{triangle}; ray {bits}");
         for (blocked, explained) in [(false, false), (true, false), (false, true), (true, true)] {

@@ -15,6 +15,9 @@ const MARKS: [(&str, palette::Srgb); 3] = [
     ("false blocked", palette::VERMILLION),
 ];
 
+/// Pixels across that the picture has at least, so that single ones are seen: each becomes a square.
+const WIDTH: u32 = 640;
+
 /// The brightest grey of the shadows below the marks.
 const LIT: f32 = 0.3;
 
@@ -51,7 +54,9 @@ impl Report {
         let entries: Vec<(Vec3, String)> = (0..MARKS.len())
             .map(|place| (colours[place], format!("{} {}", MARKS[place].0, count(place))))
             .collect();
-        with_legend((self.width, self.height), &entries, |pixel| {
+        let side = WIDTH.div_ceil(self.width);
+        with_legend((side * self.width, side * self.height), &entries, |(x, y)| {
+            let pixel = (x / side, y / side);
             match (marked.get(&pixel), asked.get(&pixel)) {
                 (Some(&place), _) => colours[place],
                 (None, Some([all, lit])) => Vec3::splat(LIT * *lit as f32 / *all as f32),

@@ -15,8 +15,13 @@
 //!   two sums) and the permanent 8 C² |d|₁. An edge is off by 4uC at most, so the normal by 24uEC, the slope
 //!   by 36uEC|d|₁, and the height c·n by 132uEC².
 //!
+//! Coherent packets are tested against boxes as one frustum, whose error is that of the lane with the largest
+//! coordinates and the steepest reciprocals. The lanes are taken to be alike in these, as coherent rays are.
+//!
 //! All bounds are taken [`CAUTION`] times: once for this evaluation against Embree's, once where the sign of the
 //! slope, to which the others are compared, may be wrong too; and twice that again for good measure.
+
+use std::ops::RangeInclusive;
 
 use glam::{DVec3, Vec3Swizzles};
 
@@ -31,8 +36,12 @@ const ROUNDING: f64 = 5.0 * f32::EPSILON as f64;
 /// 2⁻¹²⁵: what underflow may add to a permanent, as in `exact::filter`.
 const UNDERFLOW: f64 = 2.0 * f32::MIN_POSITIVE as f64;
 
-/// Beyond this an intermediate may overflow.
-const OVERFLOW: f64 = f32::MAX as f64 / 16.0;
+/// The error of a quantity whose terms may overflow: its permanent, in f32 and with room for twice the edges.
+const OVERFLOW: f64 = ROUNDING * f32::MAX as f64 / 16.0;
+
+/// Slopes whose doubles have reciprocals that are no denormals, and are none themselves: 2⁻¹²⁴ to 2¹²⁴.
+const INVERTIBLE: RangeInclusive<f64> =
+    4.0 * f32::MIN_POSITIVE as f64..=0.25 / f32::MIN_POSITIVE as f64;
 
 /// Embree ignores triangles with coordinates as large as this (`FLT_LARGE`).
 const LARGEST: f32 = 1.844e18;
@@ -67,6 +76,8 @@ struct Sides {
     edge_error: f64,
     slope: f64,
     slope_error: f64,
+    /// Whether the test can divide by the slope, if it does.
+    has_quotient: bool,
     start: f64,
     start_error: f64,
     stop: f64,
@@ -75,14 +86,14 @@ struct Sides {
 
 impl Sides {
     fn fate(&self) -> Fate {
-        let errors = [self.edge_error, self.slope_error, self.start_error, self.stop_error];
+        let errors = [self.edge_error, self.start_error, self.stop_error];
         // Not a number, or too large for f32.
         if !errors.iter().all(|error| *error < OVERFLOW) {
             return Fate::Either;
         }
-        let [edge_error, slope_error, start_error, stop_error] = errors.map(|e| CAUTION * e);
+        let [edge_error, start_error, stop_error] = errors.map(|error| CAUTION * error);
         let least = self.edges.into_iter().fold(f64::INFINITY, f64::min);
-        let slope_is_sure = self.slope > slope_error;
+        let slope_is_sure = self.has_quotient && self.slope > CAUTION * self.slope_error;
         let is_outside = self.start < -start_error || self.stop < -stop_error;
         if least < -edge_error || (slope_is_sure && is_outside) {
             Fate::Missed
@@ -139,6 +150,7 @@ fn moller(ray: &Ray, triangle: &Triangle) -> Sides {
         edge_error: ROUNDING * permanent,
         slope: slope.abs(),
         slope_error: ROUNDING * permanent,
+        has_quotient: true,
         start,
         start_error: ROUNDING * (area * distance + UNDERFLOW),
         stop: p * slope.abs() - q * start,
@@ -171,10 +183,12 @@ fn pluecker(ray: &Ray, triangle: &Triangle) -> Sides {
     let quotient_error = ROUNDING * (p * slope.abs() + q * start.abs());
     Sides {
         edges,
-        // The edges are fat by 2⁻²³ of the sum of the volumes: a fifth of 10u of their permanents.
+        // The edges are fat by 2⁻²³ of the sum of the volumes, 48u C² |d|₁ at most: less than the bound once more.
         edge_error: 2.0 * volume_error,
         slope: slope.abs(),
         slope_error,
+        // The slope is doubled and inverted, and `rcpps` knows no denormals.
+        has_quotient: INVERTIBLE.contains(&slope.abs()),
         start,
         start_error,
         stop: p * slope.abs() - q * start,
@@ -199,10 +213,9 @@ fn box_is_met(ray: &Ray, bounds: &Bounds) -> bool {
         // Reciprocal, difference and product, or two products: below 5u, and then CAUTION.
         let error = ROUNDING * (origin.abs() + low.abs().max(high.abs()));
         if direction.abs() < SMALLEST_COMPONENT {
-            if origin - low <= error || high - origin <= error {
-                return false;
-            }
-            slabs.push((f64::NEG_INFINITY, f64::INFINITY, 0.0));
+            // Its sign may be lost or not.
+            let inside = (origin - low).min(high - origin) / SMALLEST_COMPONENT;
+            slabs.push((-inside, inside, error / SMALLEST_COMPONENT));
         } else {
             let (a, b) = ((low - origin) / direction, (high - origin) / direction);
             slabs.push((a.min(b), a.max(b), error / direction.abs()));

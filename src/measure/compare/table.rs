@@ -7,7 +7,7 @@ use crate::measure::grouped;
 use crate::measure::wilson::PerMillion;
 
 /// Widths of the columns after the name.
-const WIDTHS: [usize; 6] = [12, 26, 26, 7, 15, 12];
+const WIDTHS: [usize; 6] = [12, 26, 26, 14, 16, 13];
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -34,7 +34,7 @@ impl fmt::Display for Report {
             "agree",
             "false blocked a million",
             "false clear a million",
-            "ties",
+            "ties blocked",
             "must be within",
             "unexplained",
         ];

@@ -44,8 +44,6 @@ impl Contender {
     /// # Errors
     /// If it is not to be had here.
     ///
-    /// # Panics
-    /// Without triangles.
     pub fn build(&self, triangles: &Arc<Triangles>) -> Result<Box<dyn Occlusion>, BackendError> {
         build(self.backend, self.test, triangles, &self.options)
     }
@@ -67,8 +65,6 @@ impl Contender {
     /// # Errors
     /// If it is not to be had here.
     ///
-    /// # Panics
-    /// Without triangles.
     pub fn build_after(
         &self,
         last: Option<(&Self, Box<dyn Occlusion>)>,

@@ -1,13 +1,13 @@
 //! Sorting triangles into voxels, and dividing those that are crowded.
 
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::level::{Content, Level};
 use super::voxelize::overlapped;
-use super::{Grid, resolution};
+use super::{Grid, MOST_ENTRIES, resolution};
 use crate::geometry::{Bounds, TriangleId, Triangles};
 
 /// A voxel with more triangles than this is divided.
@@ -58,10 +58,20 @@ struct Division {
     voxels: Vec<(usize, Voxel)>,
 }
 
-pub(super) fn build(triangles: &Triangles, outermost: Level, nested: bool) -> Grid {
-    let sorted = sort(&outermost, triangles);
+/// There would be too many entries at this resolution.
+pub(super) struct TooFine(pub [u32; 3]);
+
+/// Builds a grid with at most so many entries in the voxels of the outermost one.
+pub(super) fn build(
+    triangles: &Triangles,
+    outermost: Level,
+    nested: bool,
+    most: usize,
+) -> Result<Grid, TooFine> {
+    let resolution = outermost.resolution;
+    let sorted = sort(&outermost, triangles, most).ok_or(TooFine(resolution))?;
     let voxels = outermost.voxel_count();
-    let scene = triangles.bounds().expect("there are triangles");
+    let scene = triangles.bounds().unwrap_or_default();
     let divider = Divider { triangles, scene };
     let crowded: Vec<usize> =
         (0..voxels).filter(|&voxel| nested && sorted.list(voxel).len() > CROWDED).collect();
@@ -91,7 +101,7 @@ pub(super) fn build(triangles: &Triangles, outermost: Level, nested: bool) -> Gr
         };
     }
     grid.seal();
-    grid
+    Ok(grid)
 }
 
 /// A grid of its own for a crowded voxel of an outermost grid; `None` where that gains too little.
@@ -202,6 +212,10 @@ impl Divider<'_> {
         }
         let mut inside: Vec<(usize, TriangleId)> = Vec::new();
         for &id in list {
+            // Dividing what lies on each other separates nothing.
+            if inside.len() > MOST_ENTRIES * list.len() {
+                return None;
+            }
             overlapped(&level, &self.triangles.get(id), |voxel| inside.push((voxel, id)));
         }
         // The sort is stable: ids stay in ascending order.
@@ -224,15 +238,26 @@ impl Divider<'_> {
     }
 }
 
-/// Sorts all triangles into the voxels of the outermost grid; ids ascend in each list.
-fn sort(level: &Level, triangles: &Triangles) -> Sorted {
+/// Sorts all triangles into the voxels of the outermost grid; ids ascend in each list. `None` if there are more
+/// entries than `most`.
+fn sort(level: &Level, triangles: &Triangles, most: usize) -> Option<Sorted> {
     let counts: Vec<AtomicU32> = (0..level.voxel_count()).map(|_| AtomicU32::new(0)).collect();
+    let entries = AtomicUsize::new(0);
     let ids = 0..triangles.len() as u32;
     ids.clone().into_par_iter().for_each(|id| {
+        if entries.load(Relaxed) > most {
+            return;
+        }
+        let mut voxels = 0;
         overlapped(level, &triangles.get(id), |voxel| {
             counts[voxel].fetch_add(1, Relaxed);
+            voxels += 1;
         });
+        entries.fetch_add(voxels, Relaxed);
     });
+    if entries.into_inner() > most {
+        return None;
+    }
     let mut starts = Vec::with_capacity(counts.len() + 1);
     let mut total = 0u32;
     for count in &counts {
@@ -254,7 +279,7 @@ fn sort(level: &Level, triangles: &Triangles) -> Sorted {
     });
     let mut lists: Vec<TriangleId> = lists.into_iter().map(AtomicU32::into_inner).collect();
     sort_lists(&starts, &mut lists);
-    Sorted { starts, lists }
+    Some(Sorted { starts, lists })
 }
 
 /// Sorts each voxel's list, so that the grid does not depend on which thread came first.

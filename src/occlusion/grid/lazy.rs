@@ -43,14 +43,11 @@ pub struct LazyGrid {
 
 impl LazyGrid {
     /// Sorts the triangles into voxels, in parallel; divides none.
-    ///
-    /// # Panics
-    /// Without triangles.
     #[must_use]
     pub fn new(triangles: &Arc<Triangles>, options: GridOptions) -> Self {
         let outer = Grid::undivided(triangles, options.resolution);
         let insides = (0..outer.list_count()).map(|_| OnceLock::new()).collect();
-        let scene = triangles.bounds().expect("there are triangles");
+        let scene = triangles.bounds().unwrap_or_default();
         Self { triangles: triangles.clone(), scene, outer, insides }
     }
 

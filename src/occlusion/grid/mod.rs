@@ -39,6 +39,10 @@ const UNIFORM_DENSITY: f64 = 4.0;
 /// Voxels to a triangle of the outermost grid where crowded voxels are divided.
 const NESTED_DENSITY: f64 = 0.5;
 
+/// Voxels that a triangle may lie in, on average: where many large triangles lie on each other there would be
+/// more, and the grid is made coarser until there are not.
+const MOST_ENTRIES: usize = 64;
+
 /// Most voxels along one axis.
 const MOST_VOXELS: f64 = 1024.0;
 
@@ -62,12 +66,9 @@ impl Default for GridOptions {
 
 impl GridOptions {
     /// A plain uniform grid of about so many voxels, as near to cubes as the box of the triangles allows.
-    ///
-    /// # Panics
-    /// Without triangles.
     #[must_use]
     pub fn uniform(triangles: &Triangles, voxels: usize) -> Self {
-        let bounds = triangles.bounds().expect("there are triangles");
+        let bounds = triangles.bounds().unwrap_or_default();
         let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
         let resolution = Some(resolution(extent, voxels as f64));
         Self { resolution, nested: false, lazy: false }
@@ -88,25 +89,40 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Sorts the triangles into voxels, in parallel.
-    ///
-    /// # Panics
-    /// Without triangles.
+    /// Sorts the triangles into voxels, in parallel. Without triangles, it is a grid of nothing.
     #[must_use]
     pub fn new(triangles: &Triangles, options: GridOptions) -> Self {
         let density = if options.nested { NESTED_DENSITY } else { UNIFORM_DENSITY };
-        let outermost = Self::place(triangles, options.resolution, density);
-        build::build(triangles, outermost, options.nested)
+        Self::fitting(triangles, options.resolution, density, options.nested)
     }
 
     /// The outermost grid alone of one whose crowded voxels are to be divided.
     fn undivided(triangles: &Triangles, resolution: Option<[u32; 3]>) -> Self {
-        build::build(triangles, Self::place(triangles, resolution, NESTED_DENSITY), false)
+        Self::fitting(triangles, resolution, NESTED_DENSITY, false)
+    }
+
+    /// A grid of the given resolution or with `density` voxels to a triangle; coarser if there were too many entries.
+    fn fitting(
+        triangles: &Triangles,
+        mut resolution: Option<[u32; 3]>,
+        density: f64,
+        nested: bool,
+    ) -> Self {
+        // What was asked for is kept as long as places fit their 32 bits.
+        let most =
+            if resolution.is_some() { u32::MAX as usize } else { MOST_ENTRIES * triangles.len() };
+        loop {
+            let outermost = Self::place(triangles, resolution, density);
+            match build::build(triangles, outermost, nested, most) {
+                Ok(grid) => return grid,
+                Err(build::TooFine(tried)) => resolution = Some(tried.map(|n| n.div_ceil(2))),
+            }
+        }
     }
 
     /// Where an outermost grid is, of the given resolution or with `density` voxels to a triangle.
     fn place(triangles: &Triangles, resolution: Option<[u32; 3]>, density: f64) -> Level {
-        let bounds = triangles.bounds().expect("there are triangles");
+        let bounds = triangles.bounds().unwrap_or_default();
         let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
         // A flat scene gets a box with some depth, so that a voxel has a volume.
         let thickness = padding(&bounds, extent.max_element() * PADDING / MOST_VOXELS);
@@ -122,6 +138,12 @@ impl Grid {
     #[must_use]
     pub fn resolution(&self) -> [u32; 3] {
         self.levels[0].resolution
+    }
+
+    /// The corner of a voxel of the outermost grid with the least coordinates.
+    #[must_use]
+    pub fn corner(&self, voxel: [u32; 3]) -> DVec3 {
+        self.levels[0].corner(voxel)
     }
 
     /// Number of voxels, those of nested grids included.

@@ -8,11 +8,14 @@
 use glam::DVec3;
 
 use super::Level;
-use crate::geometry::Triangle;
+use crate::geometry::{Triangle, is_finite};
 
 /// Calls `found` with every voxel, counted from the grid's first, that the triangle comes within the
-/// padding of.
+/// padding of; with none if the triangle is not finite.
 pub(super) fn overlapped(level: &Level, triangle: &Triangle, mut found: impl FnMut(usize)) {
+    if !is_finite(triangle) {
+        return;
+    }
     let corners = triangle.map(|corner| corner.as_dvec3());
     let pad = DVec3::splat(level.pad);
     let low = corners[0].min(corners[1]).min(corners[2]) - pad;

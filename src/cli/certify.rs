@@ -1,0 +1,170 @@
+//! `umbra certify`: the exact test against the oracle, for as long as one likes.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::failure::Failure;
+use super::options::{check_outputs, pool, print, write_json};
+use super::progress::with_rate;
+use crate::exact::adversary::Class;
+use crate::exact::campaign::{Summary, campaign};
+use crate::measure::grouped;
+
+/// Queries of a class between two looks at the clock: a second's work at most.
+const BLOCK: u64 = 100_000;
+
+const DETAILS: &str = "\
+Every query is one ray and one triangle that are hard to get right, and depends on nothing but its class and
+index. The filter in f32 (with and without fused multiplications), f64 with a bound, and expansions all decide
+it; one in 100 is also put to the oracle, which computes with big integers. Wrong is what any two disagree on.
+
+Exit status 1 if anything was wrong.
+
+Examples:
+  umbra certify                                    # a million of each class
+  umbra certify --queries 5000000 --stats certified.json
+  umbra certify --classes sliver,grazing --seconds 600 --queries 1000000000";
+
+/// Holds the exact test against exact arithmetic on queries that are hard to get right
+#[derive(Args)]
+#[command(after_help = DETAILS)]
+pub(super) struct Certify {
+    /// Queries of each class
+    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    queries: u64,
+    /// Kinds of queries; all if not given
+    #[arg(long, value_name = "NAMES", value_delimiter = ',',
+          value_parser = clap::builder::PossibleValuesParser::new(Class::ALL.iter().map(|class| class.name())))]
+    classes: Vec<String>,
+    /// Stops after so long, with as many queries as there was time for
+    #[arg(long, value_name = "S")]
+    seconds: Option<u64>,
+    /// Threads; all processors if not given
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Writes the table as JSON
+    #[arg(long, value_name = "FILE")]
+    stats: Option<PathBuf>,
+}
+
+/// What was found about a class.
+#[derive(Serialize)]
+struct Row {
+    class: &'static str,
+    #[serde(flatten)]
+    summary: Summary,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    classes: &'a [Row],
+    all: Summary,
+    seconds: f64,
+}
+
+impl Certify {
+    pub fn run(self) -> Result<(), Failure> {
+        if self.queries == 0 {
+            return Err(Failure::Input("--queries 0: give at least 1".to_owned()));
+        }
+        let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
+        check_outputs(&outputs, &[])?;
+        let pool = pool(self.threads)?;
+        let start = Instant::now();
+        let done = AtomicU64::new(0);
+        let rows = with_rate(
+            Some(self.queries * self.classes().count() as u64),
+            || (done.load(Relaxed), done.load(Relaxed)),
+            || pool.install(|| self.certify(start, &done)),
+        );
+        let all = rows.iter().fold(Summary::default(), |all, row| all + row.summary);
+        let seconds = start.elapsed().as_secs_f64();
+        print(&table(&rows, all, seconds))?;
+        if let Some(path) = &self.stats {
+            write_json(path, &Report { classes: &rows, all, seconds })?;
+        }
+        match all.wrong {
+            0 => Ok(()),
+            wrong => {
+                Err(Failure::Comparison(format!("{wrong} of {} answers are wrong", all.queries)))
+            }
+        }
+    }
+
+    fn classes(&self) -> impl Iterator<Item = Class> {
+        let wanted = |class: &Class| {
+            self.classes.is_empty() || self.classes.iter().any(|name| name == class.name())
+        };
+        Class::ALL.iter().copied().filter(wanted)
+    }
+
+    /// Takes the classes in turns, so that all get as far where the time is limited.
+    fn certify(&self, start: Instant, done: &AtomicU64) -> Vec<Row> {
+        let mut rows: Vec<_> = self
+            .classes()
+            .map(|class| (class, Row { class: class.name(), summary: Summary::default() }))
+            .collect();
+        let limit = self.seconds.map(Duration::from_secs);
+        for first in (0..self.queries).step_by(BLOCK as usize) {
+            let indices = first..self.queries.min(first + BLOCK);
+            for (class, row) in &mut rows {
+                if limit.is_some_and(|limit| start.elapsed() >= limit) {
+                    break;
+                }
+                row.summary = row.summary + campaign(*class, indices.clone());
+                done.fetch_add(indices.end - indices.start, Relaxed);
+            }
+        }
+        rows.into_iter().map(|(_, row)| row).collect()
+    }
+}
+
+fn table(rows: &[Row], all: Summary, seconds: f64) -> String {
+    let mut text = line(
+        "class",
+        [
+            "queries",
+            "blocked",
+            "clear",
+            "ties",
+            "by f32",
+            "by f64",
+            "by expansions",
+            "to oracle",
+            "wrong",
+        ]
+        .map(str::to_owned),
+    );
+    let numbers = |summary: &Summary| {
+        [
+            summary.queries,
+            summary.blocked,
+            summary.clear,
+            summary.ties,
+            summary.by_filter,
+            summary.by_double,
+            summary.by_expansion,
+            summary.by_oracle,
+            summary.wrong,
+        ]
+        .map(grouped)
+    };
+    for row in rows {
+        text += &line(row.class, numbers(&row.summary));
+    }
+    text += &line("all", numbers(&all));
+    text += &format!("{seconds:.0} s\n");
+    text
+}
+
+fn line(name: &str, columns: [String; 9]) -> String {
+    let mut line = format!("{name:18}");
+    for column in columns {
+        line += &format!("{column:>14}");
+    }
+    line + "\n"
+}
