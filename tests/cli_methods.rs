@@ -87,7 +87,7 @@ fn what_the_memory_limit_makes_coarser_or_leaves_out_is_said() {
     let (_, expected) = render("");
     for (arguments, told) in [
         ("--memory 1M", "voxels only, to keep to the memory limit"),
-        ("--memory 1M --lazy", "voxels only, to keep to the memory limit"),
+        ("--memory 200k --lazy", "voxels only, to keep to the memory limit"),
         ("--memory 0", "grid takes 1 MiB, more than the memory limit"),
         ("--memory 100k --backend cwbvh", "more than the memory limit, and cannot be coarser"),
         ("--memory 1M --shadows voxel-occlusion", "voxel-occlusion: steps aside"),

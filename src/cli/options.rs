@@ -97,7 +97,12 @@ impl EngineOptions {
 
     /// Builds the backend; also says how many seconds that took.
     pub fn build(&self, scene: &Scene) -> Result<(Box<dyn Occlusion>, f64), Failure> {
-        let grid = GridOptions { resolution: self.grid, nested: !self.uniform, lazy: self.lazy };
+        let grid = GridOptions {
+            resolution: self.grid,
+            nested: !self.uniform,
+            lazy: self.lazy,
+            most_bytes: self.memory,
+        };
         let start = Instant::now();
         let backend = with_word(&format!("building {}", self.backend), || {
             let backend = self.build_over(scene, grid)?;

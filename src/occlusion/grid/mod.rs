@@ -56,11 +56,13 @@ pub struct GridOptions {
     pub nested: bool,
     /// Whether they are so only when a ray first comes to them.
     pub lazy: bool,
+    /// Bytes beyond which none is divided any more when a ray comes to it.
+    pub most_bytes: Option<u64>,
 }
 
 impl Default for GridOptions {
     fn default() -> Self {
-        Self { resolution: None, nested: true, lazy: false }
+        Self { resolution: None, nested: true, lazy: false, most_bytes: None }
     }
 }
 
@@ -71,7 +73,7 @@ impl GridOptions {
         let bounds = triangles.bounds().unwrap_or_default();
         let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
         let resolution = Some(resolution(extent, voxels as f64));
-        Self { resolution, nested: false, lazy: false }
+        Self { resolution, nested: false, ..Self::default() }
     }
 }
 
