@@ -120,7 +120,8 @@ fn sizes_samples_and_depths() {
     }
     render_refused("--grid 0,1,1", &["--grid", "1 to 1024"]);
     render_refused("--grid 1024,1024,1024", &["--grid", "1073741824 voxels are too many"]);
-    render_refused("--tree-depth 32", &["tree depth 32", "31"]);
+    let line = "render drum -o new.png --tree-depth 32";
+    refused(workplace().path(), line, &["tree depth 32", "31"]);
     let line = "paper --quick --scene drum --every 0";
     assert_refusal(&run(workplace().path(), line), &["every 0", "1 to 60"]);
     render_refused("--bits 9", &["--bits", "8, 16"]);
@@ -244,6 +245,10 @@ fn a_disk_that_fills_up_leaves_nothing() {
             .output()
             .unwrap();
         assert_refusal(&output, &[&format!("cannot write {name}: File too large")]);
+        assert!(
+            !common::command::said(&output).contains(".umbra-"),
+            "a file nobody knows is named"
+        );
         assert!(common::command::contents(folder.path()) == before, "{line}");
     }
 }

@@ -40,10 +40,11 @@ pub struct AnswerMap {
     pixels: Vec<Answered>,
 }
 
-/// The colour of an outcome.
+/// The colour of an outcome. What had to be traced and is lit, the most of most pictures, is dark, so
+/// that the shadows stand out, and how they were found.
 fn colour_of(outcome: Outcome) -> Vec3 {
     from_srgb(match outcome {
-        Outcome::TraversalLit => palette::YELLOW,
+        Outcome::TraversalLit => [52, 52, 56],
         Outcome::TraversalBlocked => palette::VERMILLION,
         Outcome::Object => palette::BLUISH_GREEN,
         Outcome::Voxel => palette::SKY_BLUE,

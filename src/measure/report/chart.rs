@@ -96,7 +96,8 @@ impl Chart {
             None => String::new(),
         };
         let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"chart\" viewBox=\"0 0 {width:.0} {height:.0}\"{place} role=\"img\" aria-label=\"{title}\">\n"
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"chart\" viewBox=\"0 0 {width:.0} \
+             {height:.0}\"{place} role=\"img\" aria-label=\"{title}\">\n"
         );
         put(
             &mut svg,
@@ -149,7 +150,8 @@ pub fn document(charts: &[Chart], width: f64) -> String {
         height += taken;
     }
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" height=\"{height:.0}\">\n<style>\n{}</style>\n{parts}</svg>\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
+         height=\"{height:.0}\">\n<style>\n{}</style>\n{parts}</svg>\n",
         style()
     )
 }

@@ -106,7 +106,8 @@ impl Look {
             text => format!("<title>{}</title>", super::markup::escape(text)),
         };
         format!(
-            "<path class=\"mark {fill} {class}\" transform=\"translate({x:.1} {y:.1})\" d=\"{path}\">{title}</path>\n"
+            "<path class=\"mark {fill} {class}\" transform=\"translate({x:.1} {y:.1})\" \
+             d=\"{path}\">{title}</path>\n"
         )
     }
 }

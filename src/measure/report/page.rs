@@ -79,7 +79,9 @@ impl Page {
     pub fn new(title: &str, lead: &str) -> Self {
         let title = escape(title);
         let mut body = format!(
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n<style>\n{}{}</style>\n</head>\n<body>\n",
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" \
+             content=\"width=device-width, \
+             initial-scale=1\"/>\n<title>{title}</title>\n<style>\n{}{}</style>\n</head>\n<body>\n",
             include_str!("page.css"),
             style()
         );
@@ -146,7 +148,8 @@ impl Page {
             put(
                 &mut self.body,
                 format_args!(
-                    "<label class=\"filter\" data-table=\"{id}\" hidden=\"\">{} <input type=\"search\"/></label>\n",
+                    "<label class=\"filter\" data-table=\"{id}\" hidden=\"\">{} <input \
+                     type=\"search\"/></label>\n",
                     escape(filter)
                 ),
             );
@@ -188,7 +191,8 @@ impl Page {
             put(
                 &mut self.body,
                 format_args!(
-                    "<figure data-name=\"{name}\"><img src=\"{uri}\" alt=\"{name}\" width=\"{}\" height=\"{}\"/><figcaption>{caption}</figcaption></figure>\n",
+                    "<figure data-name=\"{name}\"><img src=\"{uri}\" alt=\"{name}\" width=\"{}\" \
+                     height=\"{}\"/><figcaption>{caption}</figcaption></figure>\n",
                     film.width(),
                     film.height()
                 ),

@@ -10,8 +10,10 @@ use crate::shadow::Method;
 /// Width of the SVG document.
 const WIDTH: f64 = 900.0;
 
-/// Share of the height that belongs to contenders without wrong answers: most of them have none.
+/// Share of the height that belongs to contenders without wrong answers, for most of them have none; and where
+/// all have none.
 const LANE: f64 = 0.45;
+const FAULTLESS_LANE: f64 = 0.75;
 
 /// All charts of a report below one another, as an SVG document.
 #[must_use]
@@ -107,6 +109,9 @@ fn chart(
 ) -> Chart {
     let points = &report.engines;
     let is_wrongness = lane > 0.0;
+    let exact = (0..points.len()).filter(|&place| points[place].test == Test::Exact.name());
+    let fastest_exact =
+        exact.max_by(|&a, &b| speed(&points[a]).median.total_cmp(&speed(&points[b]).median));
     let marks = points.iter().enumerate().map(|(place, point)| Mark {
         x: speed(point).median,
         y: cost(point),
@@ -114,11 +119,15 @@ fn chart(
         y_spread: is_wrongness
             .then_some([point.wrong_per_million.low, point.wrong_per_million.high]),
         look: look_of(point),
-        label: if front.contains(&place) { point.name.clone() } else { String::new() },
+        label: match front.contains(&place) || fastest_exact == Some(place) {
+            true => point.name.clone(),
+            false => String::new(),
+        },
         tooltip: tooltip(point),
     });
     // Where nobody is wrong, the axis shows how wrong they might be all the same.
     let is_faultless = is_wrongness && points.iter().all(|point| cost(point) <= 0.0);
+    let lane = if is_faultless { FAULTLESS_LANE } else { lane };
     let costs = points
         .iter()
         .map(|point| if is_faultless { point.wrong_per_million.high } else { cost(point) });

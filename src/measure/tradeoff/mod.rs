@@ -237,9 +237,11 @@ pub fn measure(
         Some(pictures::tessellation(name, factors, reference, &single, *repetitions, progress)?)
     } else {
         notes.push(if builtin::NAMES.contains(&&*scene.name) {
-            "no trade of tessellation: all surfaces of this scene are flat, and its triangles are the surfaces".to_owned()
+            "no trade of tessellation: all surfaces of this scene are flat, and its triangles are the \
+             surfaces".to_owned()
         } else {
-            "no trade of tessellation: a file has triangles only, not the surfaces they stand for; the built-in scenes drum and chair-room have both".to_owned()
+            "no trade of tessellation: a file has triangles only, not the surfaces they stand for; the \
+             built-in scenes drum and chair-room have both".to_owned()
         });
         None
     };

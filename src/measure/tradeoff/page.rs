@@ -61,7 +61,8 @@ fn findings(report: &Report) -> Vec<String> {
         ));
     }
     findings.push(format!(
-        "{count} of {} contenders gave no wrong answer here; {} rays were answered otherwise than exactly by some contender, ties included.",
+        "{count} of {} contenders gave no wrong answer here; {} rays were answered otherwise than exactly by \
+         some contender, ties included.",
         report.engines.len(),
         report.differing_queries
     ));
@@ -77,7 +78,9 @@ fn findings(report: &Report) -> Vec<String> {
 
 fn engines(page: &mut Page, report: &Report) {
     page.heading("Engines, tests and shadow methods");
-    page.paragraph("Colour says the engine, shape the triangle test. The dashed line joins those that no other beats in both; they are ringed. In the shaded lane no answer was wrong; height means nothing there. Thin lines: least to greatest of the repetitions, and the 95 % interval of wrong answers.");
+    page.paragraph("Colour says the engine, shape the triangle test. The dashed line joins those that no other \
+        beats in both; they are ringed. In the shaded lane no answer was wrong; height means nothing there. \
+        Thin lines: least to greatest of the repetitions, and the 95 % interval of wrong answers.");
     for chart in engine_charts(report) {
         page.chart(&chart);
     }
@@ -130,7 +133,9 @@ fn spread(timing: Timing) -> Cell {
 fn shadows(page: &mut Page, report: &Report) {
     let pictures = &report.pictures;
     page.heading("What the shadow rays see");
-    page.paragraph("Press a name to flip; hold the picture to see the first one again. Differences are drawn over the exact shadows: blue where light leaks in, orange-red where there is a shadow that is none, yellow where a ray only touches a triangle at its end. Lone pixels are framed.");
+    page.paragraph("Press a name to flip; hold the picture to see the first one again. Differences are drawn \
+        over the exact shadows: blue where light leaks in, orange-red where there is a shadow that is none, \
+        yellow where a ray only touches a triangle at its end. Lone pixels are framed.");
     let about = &report.circumstances;
     let differences: Vec<(String, String)> = pictures
         .masks
@@ -154,7 +159,8 @@ fn shadows(page: &mut Page, report: &Report) {
         },
         Shown {
             name: "exact shadows",
-            caption: "White where every light that is asked about reaches the pixel, black where none does; reflections included.",
+            caption: "White where every light that is asked about reaches the pixel, black where none does; \
+                reflections included.",
             film: &pictures.masks.exact,
             exposure: 1.0,
         },
@@ -175,7 +181,8 @@ fn disagreements(page: &mut Page, report: &Report) {
         return;
     }
     page.paragraph(&format!(
-        "{} of {} rays on which some contender differs from exact arithmetic, those that most get wrong first; the JSON file has them too. Bits: origin, direction and end of the ray as f32.",
+        "{} of {} rays on which some contender differs from exact arithmetic, those that most get wrong first; \
+         the JSON file has them too. Bits: origin, direction and end of the ray as f32.",
         report.disagreements.len(),
         grouped(report.differing_queries as u64)
     ));
@@ -221,7 +228,9 @@ fn tessellation(page: &mut Page, report: &Report) {
         return;
     };
     page.paragraph(&format!(
-        "Making the triangles of the curved surfaces, building the grid and rendering with the exact test, one sample a pixel. The picture is held against that of {reference_name}; the triangles against the surfaces themselves."
+        "Making the triangles of the curved surfaces, building the grid and rendering with the exact test, one \
+         sample a pixel. The picture is held against that of {reference_name}; the triangles against the \
+         surfaces themselves."
     ));
     for chart in tessellation_charts(report) {
         page.chart(&chart);
@@ -342,10 +351,19 @@ fn method(page: &mut Page, report: &Report, command: &str) {
     page.heading("How this was measured");
     page.command("Made by", command);
     page.paragraph(&format!(
-        "umbra {} on {}, threads: {}. Everything was measured in one run, repetitions: {}; all had their turn in each, and each time another began. Figures are medians; the spread is half the distance from the least to the greatest.",
+        "umbra {} on {}, threads: {}. Everything was measured in one run, repetitions: {}; all had their turn \
+         in each, and each time another began. Figures are medians; the spread is half the distance from \
+         the least to the greatest.",
         about.version, about.processor, about.threads, about.repetitions
     ));
-    page.paragraph("Engines: in its turn each was built from nothing, answered all shadow rays of the picture, answered them again, and was dropped. Speed is that of the second pass; with building it is that of building, preparing and the first pass together, so lazily built parts count there. Embree builds with threads of its own.");
-    page.paragraph("Truth is exact real arithmetic on the bits of each ray and triangle. A ray that touches a triangle only at an end of its open interval is a tie, which is no error. Intervals of wrong answers are Wilson's, at 95 %: none of a thousand leaves 3,800 per million possible.");
-    page.paragraph("Errors of pictures are root mean squares of what a screen shows, in 255 levels; a pixel is off if a channel differs by more than four. Errors of surfaces are root mean squares, and greatest, of the distance from triangles to the surface at the same parameters, in diagonals of the scene.");
+    page.paragraph("Engines: in its turn each was built from nothing, answered all shadow rays of the picture, \
+        answered them twice again, and was dropped. Speed is that of the faster of the last two passes; with \
+        building it is that of building, preparing and the first pass together, so lazily built parts count \
+        there. Embree builds with threads of its own.");
+    page.paragraph("Truth is exact real arithmetic on the bits of each ray and triangle. A ray that touches a \
+        triangle only at an end of its open interval is a tie, which is no error. Intervals of wrong answers \
+        are Wilson's, at 95 %: none of a thousand leaves 3,800 per million possible.");
+    page.paragraph("Errors of pictures are root mean squares of what a screen shows, in 255 levels; a pixel is \
+        off if a channel differs by more than four. Errors of surfaces are root mean squares, and greatest, \
+        of the distance from triangles to the surface at the same parameters, in diagonals of the scene.");
 }

@@ -35,7 +35,8 @@ fn write(text: &mut String, report: &Report) -> fmt::Result {
     let name_width = report.engines.iter().map(|point| point.name.len()).max().unwrap_or(0).max(8);
     writeln!(
         text,
-        "\n  {:name_width$}  Mrays/s  spread  built too   wrong per million   (95 % interval)   ties      memory",
+        "\n  {:name_width$}  Mrays/s  spread  built too   wrong per million   (95 % interval)   ties      \
+         memory",
         "engine"
     )?;
     let mut order: Vec<usize> = (0..report.engines.len()).collect();
@@ -58,7 +59,8 @@ fn write(text: &mut String, report: &Report) -> fmt::Result {
     report.samples.iter().try_for_each(|point| samples(text, point))?;
     writeln!(
         text,
-        "  picture error: root mean square, in 255 levels of the screen; surface error: in diagonals of the scene"
+        "  picture error: root mean square, in 255 levels of the screen; surface error: in diagonals of the \
+         scene"
     )
 }
 
@@ -79,7 +81,7 @@ fn row(point: &EnginePoint) -> String {
 fn tessellation(text: &mut String, point: &TessellationPoint) -> fmt::Result {
     writeln!(
         text,
-        "  {:12} {:10} {:10.4} {:>7} {:14.3} {:14.2e}",
+        "  {:12} {:>10} {:10.4} {:>7} {:14.3} {:14.2e}",
         point.factor,
         grouped(point.triangles as u64),
         point.seconds.median,
