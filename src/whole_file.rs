@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use tempfile::TempPath;
 
 /// A file in the making.
 ///
@@ -14,7 +14,12 @@ use tempfile::NamedTempFile;
 pub struct WholeFile(Place);
 
 enum Place {
-    Renamed { file: BufWriter<NamedTempFile>, path: PathBuf },
+    /// Not a `NamedTempFile`, whose errors name the temporary file, which nobody knows.
+    Renamed {
+        file: BufWriter<File>,
+        temporary: TempPath,
+        path: PathBuf,
+    },
     Direct(BufWriter<Box<dyn Write + Send>>),
 }
 
@@ -34,8 +39,8 @@ impl WholeFile {
         // Temporary files are private by default; this one becomes an ordinary file, so the umask decides.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = BufWriter::new(builder.tempfile_in(folder_of(&path))?);
-        Ok(Self(Place::Renamed { file, path }))
+        let (file, temporary) = builder.tempfile_in(folder_of(&path))?.into_parts();
+        Ok(Self(Place::Renamed { file: BufWriter::new(file), temporary, path }))
     }
 
     /// Something that is no file, such as standard output.
@@ -51,10 +56,10 @@ impl WholeFile {
     pub fn finish(self) -> io::Result<()> {
         match self.0 {
             Place::Direct(mut writer) => writer.flush(),
-            Place::Renamed { file, path } => {
+            Place::Renamed { file, temporary, path } => {
                 let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
-                file.as_file().sync_all()?;
-                file.persist(path)?;
+                file.sync_all()?;
+                temporary.persist(path)?;
                 Ok(())
             }
         }

@@ -245,6 +245,10 @@ fn a_disk_that_fills_up_leaves_nothing() {
             .output()
             .unwrap();
         assert_refusal(&output, &[&format!("cannot write {name}: File too large")]);
+        assert!(
+            !common::command::said(&output).contains(".umbra-"),
+            "a file nobody knows is named"
+        );
         assert!(common::command::contents(folder.path()) == before, "{line}");
     }
 }

@@ -152,7 +152,7 @@ impl Compare {
             };
             write_json(path, &statistics)?;
         }
-        report.failure().map_or(Ok(()), |why| Err(Failure::Comparison(why)))
+        conclude(&report)
     }
 
     fn choice(&self) -> Result<Choice, Failure> {
@@ -165,5 +165,33 @@ impl Compare {
                 .map_err(|error| Failure::Input(format!("--embree-variants: {error}")))?,
             ..Choice::default()
         })
+    }
+}
+
+/// Exit status 1 if the comparison failed.
+fn conclude(report: &Report) -> Result<(), Failure> {
+    report.failure().map_or(Ok(()), |why| Err(Failure::Comparison(why)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::compare::{Claim, Comparison};
+    use crate::scene::builtin;
+
+    #[test]
+    fn a_wrong_exact_answer_ends_the_command_as_a_failed_comparison() {
+        let scene = builtin::draft_at("drum", 0.01).unwrap().finish().unwrap();
+        let settings = Settings { width: 8, height: 6, ..Settings::default() };
+        let recording = Recording::of(&scene, &settings, &Progress::default()).unwrap();
+        let truth: Vec<bool> = recording.queries().iter().map(|query| query.blocked).collect();
+        let conclusion = |answers: &[bool]| {
+            let mut comparison = Comparison::new(&scene, &recording);
+            comparison.enter("it", Claim::Exact, answers);
+            conclude(&comparison.finish())
+        };
+        assert!(conclusion(&truth).is_ok());
+        let lies: Vec<bool> = truth.iter().map(|blocked| !blocked).collect();
+        assert!(matches!(conclusion(&lies), Err(Failure::Comparison(_))));
     }
 }

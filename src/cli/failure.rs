@@ -4,6 +4,9 @@ use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::render::OutputError;
+use crate::scene::SceneError;
+
 /// Prints a line to standard error; that nobody reads it is no failure.
 macro_rules! say {
     ($($part:tt)*) => {{
@@ -72,7 +75,25 @@ impl From<clap::Error> for Failure {
     }
 }
 
-/// Every library error is an input that could not be used.
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        match error {
+            SceneError::Unwritable { path, reason } => Self::unwritable(&path, &reason),
+            error => Self::Input(error.to_string()),
+        }
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        match error {
+            OutputError::Unwritable { path, reason } => Self::unwritable(&path, &reason),
+            error @ OutputError::Kind { .. } => Self::Input(error.to_string()),
+        }
+    }
+}
+
+/// Every other library error is an input that could not be used.
 macro_rules! input {
     ($($error:ty),+ $(,)?) => {$(
         impl From<$error> for Failure {
@@ -84,11 +105,9 @@ macro_rules! input {
 }
 
 input!(
-    crate::scene::SceneError,
     crate::occlusion::BackendError,
     crate::shadow::MethodError,
     crate::render::SettingsError,
-    crate::render::OutputError,
     crate::measure::compare::CompareError,
     crate::measure::paper::PaperError,
     crate::measure::recording::TooManyQueries,

@@ -12,7 +12,7 @@ use crate::geometry::lanes::Arithmetic;
 /// The engines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum Backend {
-    /// umbra's uniform grid.
+    /// umbra's grid: crowded voxels hold grids of their own.
     Grid,
     /// Intel Embree 4.
     Embree,

@@ -34,7 +34,7 @@ pub enum OutputError {
         /// The place.
         path: PathBuf,
         /// What the system said.
-        reason: String,
+        reason: std::io::Error,
     },
 }
 
@@ -130,7 +130,6 @@ pub fn write_picture(
     kind: Picture,
     path: &Path,
 ) -> Result<(), OutputError> {
-    write_whole(path, &encode_picture(film, exposure, kind)).map_err(|reason| {
-        OutputError::Unwritable { path: path.to_owned(), reason: reason.to_string() }
-    })
+    write_whole(path, &encode_picture(film, exposure, kind))
+        .map_err(|reason| OutputError::Unwritable { path: path.to_owned(), reason })
 }
