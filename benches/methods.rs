@@ -2,20 +2,22 @@
 //!
 //! The shadow queries of a picture are recorded once and asked of every method, over the grid with the exact
 //! test, in one thread. The first pass prepares what is prepared when it is first asked for; afterwards
-//! all methods take turns, and of each the median counts. All must give the same answers. *Pays after* is
-//! the number of rays a light beyond which build and first pass are won back, compared with `trace`.
+//! all methods take turns, and of each the median counts. Work is counted as for the paper's table, in
+//! instructions or CPU time of the one thread, so that other programs disturb little. All must give the
+//! same answers. *Pays after* is the number of rays a light beyond which build and first pass are won
+//! back, compared with `trace`.
 //!
 //! `cargo bench --bench methods`, and `-- NAME WxH` for scenes whose names hold NAME, and another size; the
 //! real scenes are looked for in `UMBRA_SCENES` or `../shared/scenes`.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
+use umbra::measure::paper::Meter;
 use umbra::measure::recording::Recording;
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
 use umbra::render::{Order, Progress, Settings};
 use umbra::scene::{Scene, load};
-use umbra::shadow::{Combination, Method, Prepared, VerdictKind, prepare};
+use umbra::shadow::{Answer, Combination, Method, Prepared, ShadowTally, VerdictKind, prepare};
 
 /// Passes over all rays of each method, the first apart.
 const PASSES: usize = 5;
@@ -55,23 +57,23 @@ fn find(name: &str) -> Option<PathBuf> {
 struct Row<'a> {
     name: Combination,
     prepared: Box<dyn Prepared + 'a>,
-    build: f64,
-    first: f64,
-    passes: Vec<f64>,
+    build: u64,
+    first: u64,
+    passes: Vec<u64>,
 }
 
 impl Row<'_> {
-    fn median(&self) -> f64 {
+    fn median(&self) -> u64 {
         let mut passes = self.passes.clone();
-        passes.sort_by(f64::total_cmp);
+        passes.sort_unstable();
         passes[passes.len() / 2]
     }
 }
 
-fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
-    let start = Instant::now();
+fn metered<T>(meter: &Meter, work: impl FnOnce() -> T) -> (T, u64) {
+    let before = meter.read();
     let done = work();
-    (done, start.elapsed().as_secs_f64())
+    (done, meter.read() - before)
 }
 
 fn measure(scene: &Scene, settings: &Settings) {
@@ -80,13 +82,15 @@ fn measure(scene: &Scene, settings: &Settings) {
     let rays = recording.queries().len();
     let engine = build(Backend::Grid, Test::Exact, &scene.triangles, &BuildOptions::default());
     let engine = engine.expect("the grid is always there");
+    let meter = Meter::start();
     let mut expected = None;
     let mut rows: Vec<Row<'_>> = combinations()
         .into_iter()
         .map(|name| {
-            let (prepared, build) =
-                timed(|| prepare(name, scene, &*engine).expect("the combination makes sense"));
-            let (answers, first) = timed(|| recording.answers(&*prepared));
+            let (prepared, build) = metered(&meter, || {
+                prepare(name, scene, &*engine).expect("the combination makes sense")
+            });
+            let (answers, first) = metered(&meter, || recording.answers(&*prepared));
             assert!(*expected.get_or_insert_with(|| answers.clone()) == answers, "{name} differs");
             Row { name, prepared, build, first, passes: Vec::new() }
         })
@@ -95,42 +99,57 @@ fn measure(scene: &Scene, settings: &Settings) {
         for turn in 0..rows.len() {
             let which = (turn + pass) % rows.len();
             let row = &mut rows[which];
-            row.passes.push(timed(|| recording.answers(&*row.prepared)).1);
+            row.passes.push(metered(&meter, || recording.answers(&*row.prepared)).1);
         }
     }
     let blocked = expected.iter().flatten().filter(|blocked| **blocked).count();
     println!(
-        "\n{}: {} triangles, {} lights, {rays} rays, {:.1} % blocked\n",
+        "\n{}: {} triangles, {} lights, {rays} rays, {:.1} % blocked; in {}\n",
         scene.name,
         scene.triangles.len(),
         scene.lights.len(),
         100.0 * blocked as f64 / rays as f64,
+        meter.unit().name(),
     );
     println!(
-        "| method | build, s | first pass, ns a ray | then, ns a ray | of trace | pays after, rays a light | MiB |"
+        "| method | build, million | first pass, a ray | then, a ray | of trace | lit | blocked | pays after, rays a light | MiB |"
     );
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let trace = rows[0].median();
     for row in &rows {
-        let (each, saved) = (|seconds: f64| seconds * 1e9 / rays as f64, trace - row.median());
-        let invested = row.build + (row.first - row.median()).max(0.0);
-        let pays = match row.name == Combination::default() || saved <= 0.0 {
-            true => "never".to_owned(),
-            false => {
-                format!("{:.0}", invested / saved * rays as f64 / scene.lights.len() as f64)
-            }
+        let saved = trace as f64 - row.median() as f64;
+        let invested = (row.build + row.first.saturating_sub(row.median())) as f64;
+        let pays = match saved > 0.0 {
+            _ if row.name == Combination::default() => String::new(),
+            false => "never".to_owned(),
+            true => format!("{:.0}", invested / saved * rays as f64 / scene.lights.len() as f64),
         };
+        let tally = settled(&recording, &*row.prepared);
         println!(
-            "| `{}` | {:.3} | {:.0} | {:.0} | {:.2} | {} | {:.1} |",
+            "| `{}` | {:.0} | {:.0} | {:.0} | {:.2} | {:.0} % | {:.0} % | {pays} | {:.1} |",
             row.name,
-            row.build,
-            each(row.first),
-            each(row.median()),
-            row.median() / trace,
-            if row.name == Combination::default() { "" } else { &pays },
+            row.build as f64 / 1e6,
+            row.first as f64 / rays as f64,
+            row.median() as f64 / rays as f64,
+            row.median() as f64 / trace as f64,
+            100.0 * tally.verdict_lit as f64 / rays as f64,
+            100.0 * tally.verdict_blocked as f64 / rays as f64,
             row.prepared.memory() as f64 / f64::from(1 << 20),
         );
     }
+}
+
+/// What verdicts settle of the recorded queries.
+fn settled(recording: &Recording, prepared: &dyn Prepared) -> ShadowTally {
+    let mut worker = prepared.worker();
+    let (mut asked, mut answers) = (Vec::new(), Vec::new());
+    for (light, run) in recording.runs() {
+        asked.clear();
+        asked.extend(recording.queries()[run].iter().map(|recorded| recorded.query));
+        answers.resize(asked.len(), Answer::default());
+        worker.answer(light, &asked, &mut answers);
+    }
+    worker.tally()
 }
 
 fn parse_size(word: &str) -> Option<(u32, u32)> {

@@ -76,7 +76,7 @@ fn the_grid_loses_nothing_at_any_resolution() {
     for (resolution, (nested, lazy)) in
         resolutions.into_iter().flat_map(|resolution| kinds.map(|kind| (resolution, kind)))
     {
-        let grid = GridOptions { resolution: Some(resolution), nested, lazy };
+        let grid = GridOptions { resolution: Some(resolution), nested, lazy, most_bytes: None };
         let options = BuildOptions { grid, ..Default::default() };
         let grid = build(Backend::Grid, Test::Pluecker, &triangles, &options).unwrap();
         for aim in Aim::ALL {

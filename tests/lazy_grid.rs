@@ -12,7 +12,8 @@ use umbra::occlusion::{
     Visit, Walk, build,
 };
 
-const LAZY: GridOptions = GridOptions { resolution: None, nested: true, lazy: true };
+const LAZY: GridOptions =
+    GridOptions { resolution: None, nested: true, lazy: true, most_bytes: None };
 
 /// A small ball of many triangles and a few large ones far around it.
 fn teapot_in_a_stadium() -> Vec<Triangle> {
@@ -66,6 +67,27 @@ fn threads_that_come_to_a_voxel_at_once_get_the_same_answers() {
             }
         });
     }
+}
+
+#[test]
+fn it_stops_dividing_where_memory_ends_and_loses_nothing() {
+    let mesh = teapot_in_a_stadium();
+    let triangles = triangles(&mesh);
+    let eager = engine(&triangles, GridOptions::default());
+    let bare = LazyGrid::new(&triangles, LAZY).memory() as u64;
+    let mut held = Vec::new();
+    for most in [bare, bare + 50_000, u64::MAX] {
+        let lazy = engine(&triangles, GridOptions { most_bytes: Some(most), ..LAZY });
+        let mut random = Random(31);
+        for _ in 0..500 {
+            let ray = Aim::Random.ray(&mesh, &mut random);
+            let tally = &mut Tally::default();
+            assert_eq!(lazy.occluded(&ray, tally), eager.occluded(&ray, tally), "{ray:?}");
+        }
+        assert!(lazy.memory() as u64 <= most);
+        held.push(lazy.memory() as u64);
+    }
+    assert!(held[0] == bare && held[2] > bare, "{held:?}");
 }
 
 /// Counts what it is shown.

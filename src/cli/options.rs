@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::failure::{Failure, say};
 use super::progress::with_word;
-use crate::occlusion::{Backend, BuildOptions, GridOptions, Occlusion, Test, build};
+use crate::occlusion::{Backend, BackendError, BuildOptions, GridOptions, Occlusion, Test, build};
 use crate::scene::Scene;
 use crate::shadow::{Combination, Method, Plan, Retest, SelfShadow};
 use crate::whole_file::{folder_of, write_whole};
@@ -97,13 +97,58 @@ impl EngineOptions {
 
     /// Builds the backend; also says how many seconds that took.
     pub fn build(&self, scene: &Scene) -> Result<(Box<dyn Occlusion>, f64), Failure> {
-        let grid = GridOptions { resolution: self.grid, nested: !self.uniform, lazy: self.lazy };
-        let options = BuildOptions { grid, ..BuildOptions::default() };
+        let grid = GridOptions {
+            resolution: self.grid,
+            nested: !self.uniform,
+            lazy: self.lazy,
+            most_bytes: self.memory,
+        };
         let start = Instant::now();
         let backend = with_word(&format!("building {}", self.backend), || {
-            build(self.backend, self.test(), &scene.triangles, &options)
+            let backend = self.build_over(scene, grid)?;
+            self.within_memory(scene, backend)
         })?;
         Ok((backend, start.elapsed().as_secs_f64()))
+    }
+
+    fn build_over(
+        &self,
+        scene: &Scene,
+        grid: GridOptions,
+    ) -> Result<Box<dyn Occlusion>, BackendError> {
+        let options = BuildOptions { grid, ..BuildOptions::default() };
+        build(self.backend, self.test(), &scene.triangles, &options)
+    }
+
+    /// The backend, or a coarser one if it takes more memory than it may and can be coarser; says so.
+    fn within_memory(
+        &self,
+        scene: &Scene,
+        mut backend: Box<dyn Occlusion>,
+    ) -> Result<Box<dyn Occlusion>, BackendError> {
+        /// How many times fewer voxels the next coarser grid has.
+        const COARSER: usize = 8;
+        let Some(limit) = self.memory else { return Ok(backend) };
+        let mut voxels = scene.triangles.len();
+        while backend.memory() as u64 > limit && self.backend == Backend::Grid && voxels > 0 {
+            let grid = GridOptions::uniform(&scene.triangles, voxels);
+            // Gone before the next comes.
+            drop(backend);
+            backend = self.build_over(scene, grid)?;
+            if backend.memory() as u64 <= limit || voxels == 1 {
+                let [x, y, z] = grid.resolution.expect("a number of voxels gives a resolution");
+                say!("umbra: {x} by {y} by {z} voxels only, to keep to the memory limit");
+            }
+            voxels = if voxels == 1 { 0 } else { (voxels / COARSER).max(1) };
+        }
+        if backend.memory() as u64 > limit {
+            say!(
+                "umbra: {} takes {} MiB, more than the memory limit, and cannot be coarser",
+                self.backend,
+                backend.memory().div_ceil(1 << 20),
+            );
+        }
+        Ok(backend)
     }
 
     /// A pool of the threads that were asked for.

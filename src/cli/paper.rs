@@ -15,7 +15,7 @@ use crate::measure::paper::{
 use crate::occlusion::{Backend, Test};
 use crate::render::Progress;
 use crate::scene::builtin::NAMES;
-use crate::shadow::{Method, Plan, Retest};
+use crate::shadow::{Method, Plan, Retest, VerdictSet};
 
 const DETAILS: &str = "\
 Everything runs in one thread; the pictures are the paper's unless a size is given. All methods render
@@ -68,6 +68,9 @@ pub(super) struct Paper {
     /// Whether a traversal tests again what was tested from memory
     #[arg(long, value_enum, default_value_t)]
     retest: Retest,
+    /// Verdicts that every method asks first, like voxel-occlusion; none if not given
+    #[arg(long, default_value_t, hide_default_value = true)]
+    verdicts: VerdictSet,
     /// Compares what else the paper mentions, instead of printing its table
     #[arg(long, conflicts_with = "retest")]
     variants: bool,
@@ -101,7 +104,7 @@ impl Paper {
             depth: self.depth,
             tessellation: self.tessellation,
             repetitions: self.repetitions,
-            plan: Plan { retest: self.retest, ..Method::Trace.into() },
+            plan: Plan { retest: self.retest, verdicts: self.verdicts, ..Method::Trace.into() },
         };
         if self.quick {
             conditions.size = conditions.size.or(Some((80, 60)));

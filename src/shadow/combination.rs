@@ -37,6 +37,29 @@ impl VerdictSet {
     }
 }
 
+impl fmt::Display for VerdictSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<&str> = self.iter().map(VerdictKind::name).collect();
+        f.write_str(&names.join("+"))
+    }
+}
+
+impl FromStr for VerdictSet {
+    type Err = CombinationError;
+
+    /// Reads nothing as none.
+    fn from_str(text: &str) -> Result<Self, CombinationError> {
+        if text.is_empty() {
+            return Ok(Self::NONE);
+        }
+        let Combination { verdicts, method } = text.parse()?;
+        match method {
+            Method::Trace if !verdicts.is_empty() => Ok(verdicts),
+            memory => Err(CombinationError::NotAVerdict(memory)),
+        }
+    }
+}
+
 /// What stands before a backend: verdicts, then a memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Combination {
@@ -98,6 +121,9 @@ pub enum CombinationError {
         names = Combination::names()
     )]
     TwoMemories(Method, Method),
+    /// Only verdicts are wanted.
+    #[error("{0} is no verdict; {names}", names = Combination::names())]
+    NotAVerdict(Method),
     /// Nothing can be added to nothing.
     #[error(
         "trace is the backend alone, so nothing goes with it: leave out 'trace'; {names}",
@@ -165,7 +191,10 @@ mod tests {
         assert!(refusal("cache-tree+trace").contains("trace is the backend alone"));
         assert!(refusal("cache").contains("there is no shadow method 'cache'"));
         assert!(refusal("cache-tree+").contains("there is no shadow method ''"));
+        let memory = "cache-tree".parse::<VerdictSet>().unwrap_err().to_string();
+        assert!(memory.contains("cache-tree is no verdict"), "{memory}");
         for kind in VerdictKind::ALL {
+            assert_eq!(kind.name().parse(), Ok(VerdictSet::NONE.with(kind)));
             assert!(refusal(&format!("{kind}+{kind}")).contains("twice"));
             assert!(refusal(&format!("trace+{kind}")).contains("trace is the backend alone"));
         }

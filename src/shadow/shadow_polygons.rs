@@ -11,9 +11,9 @@
 //! of the two cancel; where they fold over, it counts double: what is left are silhouettes. Borders and
 //! edges of many triangles need no care, because each triangle brings polygons of its own.
 //!
-//! Loses nearly everywhere: a query tests all polygons of its voxel, three to five determinants each,
-//! where a ray ends at the first triangle it meets; and a voxel with its polygons is prepared for each
-//! light. It wins where large polygons cast few shadows, as they did in 1977.
+//! Loses in most scenes: a query tests all polygons of its voxel, three to five determinants each, where a
+//! ray ends at the first triangle it meets; and a voxel with its polygons is prepared for each light. It
+//! wins where rays go a long way past few polygons. Figures in docs/methods.md.
 //!
 //! Exact, because every sign is certain or the query is passed on to a ray: determinants are taken in f64
 //! with a bound for rounding and for where rays towards the light end (`voxels::source`). So a point

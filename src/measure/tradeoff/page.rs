@@ -1,5 +1,7 @@
 //! The report as an HTML page.
 
+use std::path::Path;
+
 use super::charts::{engine_charts, look_of, samples_chart, tessellation_charts};
 use super::{Disagreement, EnginePoint, Report, Timing, told};
 use crate::measure::grouped;
@@ -19,7 +21,9 @@ pub fn page(report: &Report, command: &str) -> String {
         grouped(about.queries as u64),
         100.0 * about.blocked as f64 / about.queries as f64
     );
-    let mut page = Page::new(&format!("Speed against accuracy: {}", about.scene), &lead);
+    let file = Path::new(&about.scene).file_name();
+    let short = file.map_or_else(|| about.scene.clone().into(), |name| name.to_string_lossy());
+    let mut page = Page::new(&format!("Speed against accuracy: {short}"), &lead);
     page.list(&findings(report));
     engines(&mut page, report);
     shadows(&mut page, report);

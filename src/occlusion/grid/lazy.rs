@@ -7,11 +7,13 @@
 //!
 //! Sound under threads: a voxel's cell is written once, and whoever comes while another thread divides
 //! it waits. What a voxel is divided into depends on its triangles alone, so it does not matter which
-//! ray comes first. Exact for the reasons that the other grid is.
+//! ray comes first, unless memory runs out: then voxels stay as they are. Exact for the reasons that the other
+//! grid is.
 //!
 //! Jevans, Wyvill: Adaptive Voxel Subdivision for Ray Tracing. Graphics Interface 1989.
 
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 
 use super::build::{CROWDED, divide};
@@ -39,19 +41,20 @@ pub struct LazyGrid {
     outer: Grid,
     /// By list of the outer grid.
     insides: Box<[Inside]>,
+    /// Bytes that voxels may still be divided for.
+    left: AtomicU64,
 }
 
 impl LazyGrid {
     /// Sorts the triangles into voxels, in parallel; divides none.
-    ///
-    /// # Panics
-    /// Without triangles.
     #[must_use]
     pub fn new(triangles: &Arc<Triangles>, options: GridOptions) -> Self {
         let outer = Grid::undivided(triangles, options.resolution);
-        let insides = (0..outer.list_count()).map(|_| OnceLock::new()).collect();
+        let insides: Box<[Inside]> = (0..outer.list_count()).map(|_| OnceLock::new()).collect();
+        let held = (outer.memory() + size_of_val(&*insides)) as u64;
+        let left = AtomicU64::new(options.most_bytes.unwrap_or(u64::MAX).saturating_sub(held));
         let scene = triangles.bounds().unwrap_or_default();
-        Self { triangles: triangles.clone(), scene, outer, insides }
+        Self { triangles: triangles.clone(), scene, outer, insides, left }
     }
 
     /// Number of voxels that were divided so far.
@@ -72,10 +75,17 @@ impl LazyGrid {
         }
         let make = || {
             let outer = self.outer.outermost();
-            divide(&self.triangles, self.scene, outer, index, triangles).map(Box::new)
+            let grid = divide(&self.triangles, self.scene, outer, index, triangles)?;
+            let bytes = bytes_of(&grid) as u64;
+            let without = |left: u64| left.checked_sub(bytes);
+            self.left.fetch_update(Relaxed, Relaxed, without).is_ok().then(|| Box::new(grid))
         };
         self.insides[list].get_or_init(make).as_deref()
     }
+}
+
+fn bytes_of(grid: &Grid) -> usize {
+    size_of::<Grid>() + grid.memory()
 }
 
 impl Walk for LazyGrid {
@@ -114,7 +124,7 @@ impl Walk for LazyGrid {
     }
 
     fn memory(&self) -> usize {
-        let divided: usize = self.divided().map(|grid| size_of::<Grid>() + grid.memory()).sum();
+        let divided: usize = self.divided().map(bytes_of).sum();
         self.outer.memory() + size_of_val(&*self.insides) + divided
     }
 }

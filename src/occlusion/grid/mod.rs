@@ -56,11 +56,24 @@ pub struct GridOptions {
     pub nested: bool,
     /// Whether they are so only when a ray first comes to them.
     pub lazy: bool,
+    /// Bytes beyond which none is divided any more when a ray comes to it.
+    pub most_bytes: Option<u64>,
 }
 
 impl Default for GridOptions {
     fn default() -> Self {
-        Self { resolution: None, nested: true, lazy: false }
+        Self { resolution: None, nested: true, lazy: false, most_bytes: None }
+    }
+}
+
+impl GridOptions {
+    /// A plain uniform grid of about so many voxels, as near to cubes as the box of the triangles allows.
+    #[must_use]
+    pub fn uniform(triangles: &Triangles, voxels: usize) -> Self {
+        let bounds = triangles.bounds().unwrap_or_default();
+        let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
+        let resolution = Some(resolution(extent, voxels as f64));
+        Self { resolution, nested: false, ..Self::default() }
     }
 }
 
@@ -158,14 +171,6 @@ impl Grid {
                 None => return self.cell(content),
             }
         }
-    }
-
-    /// A plain uniform grid of about so many voxels.
-    pub(crate) fn uniform(triangles: &Triangles, voxels: f64) -> Self {
-        let bounds = triangles.bounds().unwrap_or_default();
-        let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
-        let resolution = Some(resolution(extent, voxels));
-        Self::new(triangles, GridOptions { resolution, nested: false, lazy: false })
     }
 
     /// Where the voxels of the outermost grid are.

@@ -16,7 +16,7 @@ pub(super) use source::Source;
 use super::Budget;
 use crate::exact::Exact;
 use crate::geometry::{Ray, TriangleId, Triangles};
-use crate::occlusion::{Clip, Engine, Grid, Level, Occlusion, Steps, Tally, Walk};
+use crate::occlusion::{Clip, Engine, Grid, GridOptions, Level, Occlusion, Steps, Tally, Walk};
 
 /// A closed box in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +62,8 @@ impl Voxels {
             let least = bytes + triangles.len() as f64 * LISTED_BYTES;
             // A grid that will not fit need not be tried.
             if least <= budget.left() as f64 {
-                let grid = Grid::uniform(triangles, voxels);
+                let options = GridOptions::uniform(triangles, voxels as usize);
+                let grid = Grid::new(triangles, options);
                 let held = (grid.voxel_count() as f64 * bytes_a_voxel) as usize;
                 if budget.take(grid.memory() + held) {
                     return Some((Self::over(triangles, grid), voxels < wanted));

@@ -1,0 +1,102 @@
+//! Shadow methods and the memory limit on the command line.
+
+mod common;
+
+use std::fs;
+
+use common::command::{TRIANGLE, refused, run, said};
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("triangle.obj"), TRIANGLE).unwrap();
+    folder
+}
+
+fn method_refused(arguments: &str, told: &[&str]) {
+    let line = format!("render triangle.obj -o out.png {arguments}");
+    refused(folder().path(), &line, told);
+}
+
+#[test]
+fn combinations_that_make_no_sense_are_refused_with_the_reason_and_the_names() {
+    let names = ["voxel-occlusion", "shadow-polygons", "object-cache", "cache-tree", "woo"];
+    for (method, reason) in [
+        ("woo+cache-tree", "woo and cache-tree are both memories"),
+        ("trace+woo", "trace is the backend alone"),
+        ("voxel-occlusion+voxel-occlusion", "voxel-occlusion twice"),
+        ("voxel-occlusion+nothing", "there is no shadow method 'nothing'"),
+    ] {
+        let told: Vec<&str> = names.iter().chain([&reason]).copied().collect();
+        method_refused(&format!("--shadows {method}"), &told);
+    }
+    let exclude = "--shadows voxel-occlusion+woo --self-shadow exclude";
+    let folder = folder();
+    let output = run(folder.path(), &format!("render triangle.obj -o out.png {exclude}"));
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).contains("voxel-occlusion+woo counts the triangle"), "{}", said(&output));
+}
+
+#[test]
+fn sizes_of_memory_that_are_none_are_refused() {
+    for size in ["lots", "-1", "12X", "", "M", "nan"] {
+        method_refused(&format!("--memory={size}"), &["--memory", "512M"]);
+    }
+}
+
+#[test]
+fn statistics_say_what_each_verdict_took_and_settled() {
+    let folder = folder();
+    let render = |arguments: &str| -> Value {
+        let line =
+            format!("render chair-room -o out.png --size 40x30 --stats out.json {arguments}");
+        let output = run(folder.path(), &line);
+        assert!(output.status.success(), "{}", said(&output));
+        let stats = fs::read(folder.path().join("out.json")).unwrap();
+        serde_json::from_slice(&stats).unwrap()
+    };
+    let plain = render("");
+    assert_eq!(plain["shadows"], "trace");
+    assert_eq!(plain["verdicts"], Value::Array(Vec::new()));
+    let stats = render("--shadows shadow-polygons+voxel-occlusion+woo");
+    assert_eq!(stats["shadows"], "voxel-occlusion+shadow-polygons+woo");
+    let mut asked = stats["counts"]["shadows"]["queries"].as_u64().unwrap();
+    let verdicts = stats["verdicts"].as_array().unwrap();
+    assert_eq!(verdicts.len(), 2);
+    for (verdict, name) in verdicts.iter().zip(["voxel-occlusion", "shadow-polygons"]) {
+        let number = |key: &str| verdict[key].as_u64().unwrap();
+        assert_eq!(verdict["verdict"], name);
+        assert_eq!(number("lit") + number("blocked") + number("passed_on"), asked);
+        assert!(verdict["build_seconds"].as_f64().unwrap() > 0.0 && number("bytes") > 0);
+        asked = number("passed_on");
+    }
+    let blocked = |stats: &Value| stats["counts"]["shadows"]["blocked"].clone();
+    assert_eq!(blocked(&stats), blocked(&plain));
+}
+
+#[test]
+fn what_the_memory_limit_makes_coarser_or_leaves_out_is_said() {
+    let folder = folder();
+    let render = |arguments: &str| {
+        let output =
+            run(folder.path(), &format!("render chair-room -o out.png --size 16x12 {arguments}"));
+        assert!(output.status.success(), "{}", said(&output));
+        (said(&output), fs::read(folder.path().join("out.png")).unwrap())
+    };
+    let (_, expected) = render("");
+    for (arguments, told) in [
+        ("--memory 1M", "voxels only, to keep to the memory limit"),
+        ("--memory 200k --lazy", "voxels only, to keep to the memory limit"),
+        ("--memory 0", "grid takes 1 MiB, more than the memory limit"),
+        ("--memory 100k --backend cwbvh", "more than the memory limit, and cannot be coarser"),
+        ("--memory 1M --shadows voxel-occlusion", "voxel-occlusion: steps aside"),
+        ("--memory 0 --shadows shadow-polygons+woo", "shadow-polygons: steps aside"),
+    ] {
+        let (said, picture) = render(arguments);
+        assert!(said.contains(told), "{arguments}: {said}");
+        assert!(picture == expected, "{arguments}");
+    }
+    let (said, _) = render("--memory 4G --shadows voxel-occlusion+woo");
+    assert!(!said.contains("memory limit"), "{said}");
+}
