@@ -9,11 +9,7 @@ use super::sparing::SparingOccluder;
 use super::walk::walk_any;
 use super::{Cell, LeftOut, Nearest, Occluder, Occlusion, Tally, Visit, Walk};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
-#[cfg(not(target_arch = "x86_64"))]
-use crate::geometry::lanes::Scalar;
-use crate::geometry::lanes::{Arithmetic, Kernel, Lanes};
-#[cfg(target_arch = "x86_64")]
-use crate::geometry::lanes::{Avx, Sse};
+use crate::geometry::lanes::{Arithmetic, Kernel, Lanes, LanesJob};
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 /// The backend that culls by `W` and decides by `T`.
@@ -49,18 +45,7 @@ impl<W: Walk, T: TriangleTest> Engine<W, T> {
     /// Runs a job compiled for the instruction set of the arithmetic, which `new` checked.
     #[inline]
     fn run<J: Job<W, T>>(&self, job: J) -> J::Answer {
-        #[cfg(target_arch = "x86_64")]
-        match self.arithmetic {
-            Arithmetic::Sse => Sse::run(InLanes::<_, _, Sse>(job, self, PhantomData)),
-            Arithmetic::Avx2 => {
-                Avx::<false>::run(InLanes::<_, _, Avx<false>>(job, self, PhantomData))
-            }
-            Arithmetic::Avx512 => {
-                Avx::<true>::run(InLanes::<_, _, Avx<true>>(job, self, PhantomData))
-            }
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        job.run::<Scalar<false, false>>(self)
+        self.arithmetic.run(WithEngine(job, self))
     }
 }
 
@@ -70,14 +55,13 @@ pub(super) trait Job<W: Walk, T: TriangleTest> {
     fn run<L: Lanes>(self, engine: &Engine<W, T>) -> Self::Answer;
 }
 
-/// A job in lanes of one kind.
-struct InLanes<J, E, L>(J, E, PhantomData<L>);
+struct WithEngine<'a, J, W, T>(J, &'a Engine<W, T>);
 
-impl<W: Walk, T: TriangleTest, J: Job<W, T>, L: Lanes> Kernel for InLanes<J, &Engine<W, T>, L> {
+impl<W: Walk, T: TriangleTest, J: Job<W, T>> LanesJob for WithEngine<'_, J, W, T> {
     type Answer = J::Answer;
 
     #[inline(always)]
-    fn run(self) -> J::Answer {
+    fn run<L: Lanes>(self) -> J::Answer {
         self.0.run::<L>(self.1)
     }
 }

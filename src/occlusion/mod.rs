@@ -9,6 +9,7 @@
 mod brute;
 mod bvh2;
 mod clip;
+mod clusters;
 mod culling_space;
 mod cwbvh;
 #[cfg(feature = "embree")]
@@ -28,6 +29,8 @@ use std::any::Any;
 pub use brute::Brute;
 pub use bvh2::Bvh2;
 pub(crate) use clip::Clip;
+pub(crate) use clusters::{Child, Node};
+pub use clusters::{Cluster, Clusters, WIDTH};
 pub use cwbvh::Cwbvh;
 #[cfg(feature = "embree")]
 pub use embree::{Embree, EmbreeOptions, Isa, PacketWidth, Quality};

@@ -36,6 +36,16 @@ impl<const RCP14: bool> Lanes for Avx<RCP14> {
         [transpose(rows, 0), transpose(rows, 1), transpose(rows, 2)]
     }
     #[inline(always)]
+    fn load(values: &[f32; 8], _: usize) -> Self {
+        // SAFETY: see the head of this file; the array holds the eight values that are read.
+        Self(unsafe { _mm256_loadu_ps(values.as_ptr()) })
+    }
+    #[inline(always)]
+    fn load_from(values: &[f32], first: usize) -> Self {
+        let values: &[f32; 8] = values[first..first + 8].try_into().expect("eight of them");
+        Self::load(values, 0)
+    }
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm256_add_ps(self.0, other.0) })

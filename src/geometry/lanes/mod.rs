@@ -20,14 +20,16 @@ mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod sse;
 
+use std::marker::PhantomData;
+
 use glam::{Vec3, Vec3A};
 
 pub use scalar::Scalar;
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use avx::Avx;
+use avx::Avx;
 #[cfg(target_arch = "x86_64")]
-pub(crate) use sse::Sse;
+use sse::Sse;
 
 use super::TriangleId;
 
@@ -37,6 +39,26 @@ pub trait Kernel {
     type Answer;
     /// Does it; to be marked `#[inline(always)]`.
     fn run(self) -> Self::Answer;
+}
+
+/// Something to do in lanes of whatever kind: see [`Arithmetic::run`].
+pub trait LanesJob {
+    /// What it gives.
+    type Answer;
+    /// Does it; to be marked `#[inline(always)]`.
+    fn run<L: Lanes>(self) -> Self::Answer;
+}
+
+/// A job in lanes of one kind.
+struct InLanes<J, L>(J, PhantomData<L>);
+
+impl<J: LanesJob, L: Lanes> Kernel for InLanes<J, L> {
+    type Answer = J::Answer;
+
+    #[inline(always)]
+    fn run(self) -> J::Answer {
+        self.0.run::<L>()
+    }
 }
 
 /// Values of f32 that are computed with together.
@@ -53,6 +75,10 @@ pub trait Lanes: Copy {
     /// The corners of up to `COUNT` triangles, as coordinates of each corner; unused lanes repeat
     /// the last triangle.
     fn gather(corners: &[[Vec3A; 3]], ids: &[TriangleId]) -> [[Self; 3]; 3];
+    /// `COUNT` of eight values, from `first` on; `first` is a multiple of `COUNT`.
+    fn load(values: &[f32; 8], first: usize) -> Self;
+    /// `COUNT` values from `first` on.
+    fn load_from(values: &[f32], first: usize) -> Self;
     /// Sum, rounded.
     fn add(self, other: Self) -> Self;
     /// Difference, rounded.
@@ -167,6 +193,19 @@ impl Arithmetic {
     #[must_use]
     pub fn of_this_cpu() -> Self {
         *Self::ALL.iter().rev().find(|a| a.is_available()).expect("SSE arithmetic is everywhere")
+    }
+
+    /// Runs a job compiled for the instruction set. The caller has made sure that this CPU has it.
+    #[inline]
+    pub(crate) fn run<J: LanesJob>(self, job: J) -> J::Answer {
+        #[cfg(target_arch = "x86_64")]
+        match self {
+            Self::Sse => Sse::run(InLanes::<_, Sse>(job, PhantomData)),
+            Self::Avx2 => Avx::<false>::run(InLanes::<_, Avx<false>>(job, PhantomData)),
+            Self::Avx512 => Avx::<true>::run(InLanes::<_, Avx<true>>(job, PhantomData)),
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        job.run::<Scalar<false, false>>()
     }
 
     /// Short name.

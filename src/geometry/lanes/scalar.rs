@@ -27,6 +27,14 @@ impl<const FUSED: bool, const RCP14: bool> Lanes for Scalar<FUSED, RCP14> {
         corners[ids[0] as usize].map(|corner| corner.to_array().map(Self))
     }
     #[inline(always)]
+    fn load(values: &[f32; 8], first: usize) -> Self {
+        Self(values[first])
+    }
+    #[inline(always)]
+    fn load_from(values: &[f32], first: usize) -> Self {
+        Self(values[first])
+    }
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self(self.0 + other.0)
     }

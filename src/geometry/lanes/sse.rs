@@ -34,6 +34,18 @@ impl Lanes for Sse {
         [transpose(rows, 0), transpose(rows, 1), transpose(rows, 2)]
     }
     #[inline(always)]
+    fn load(values: &[f32; 8], first: usize) -> Self {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|lane| values[first + lane]);
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm_setr_ps(a, b, c, d) })
+    }
+    #[inline(always)]
+    fn load_from(values: &[f32], first: usize) -> Self {
+        let values: &[f32; 4] = values[first..first + 4].try_into().expect("four of them");
+        // SAFETY: see the head of this file; the array holds the four values that are read.
+        Self(unsafe { _mm_loadu_ps(values.as_ptr()) })
+    }
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm_add_ps(self.0, other.0) })

@@ -1,0 +1,112 @@
+//! Clusters: opaque triangles in groups of eight neighbours, stored as one vector test wants them.
+//!
+//! A test of eight triangles at once costs little more than a test of one, as long as their corners lie
+//! side by side: gathering them from all over the scene costs more than the test. Light structures
+//! list clusters, not triangles: an eighth of the entries, and every test is a full one.
+//!
+//! Clusters are the leaves of a tree of boxes, eight to a node (`build`, `node`). 40 bytes a triangle, and 5
+//! for the tree.
+
+mod build;
+mod node;
+
+pub(crate) use node::{Child, Node};
+
+use crate::geometry::intersect::{RayLanes, TriangleTest};
+use crate::geometry::lanes::{Lanes, Vector};
+use crate::geometry::{Ray, TriangleId, Triangles};
+
+/// Triangles of a cluster.
+pub const WIDTH: usize = 8;
+
+/// Eight triangles: corner, coordinate, triangle. Where there are fewer, the last one is repeated.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct Cluster {
+    corners: [[[f32; WIDTH]; 3]; 3],
+    ids: [TriangleId; WIDTH],
+}
+
+impl Cluster {
+    /// The coordinates of a corner of all eight, by axis.
+    #[must_use]
+    #[inline(always)]
+    pub fn corner(&self, corner: usize) -> &[[f32; WIDTH]; 3] {
+        &self.corners[corner]
+    }
+
+    /// The triangles.
+    #[must_use]
+    #[inline(always)]
+    pub fn ids(&self) -> &[TriangleId; WIDTH] {
+        &self.ids
+    }
+
+    /// A triangle that the ray meets.
+    #[inline(always)]
+    pub(crate) fn meets<T: TriangleTest, L: Lanes>(
+        &self,
+        ray: &Ray,
+        lanes: &RayLanes<L>,
+        triangles: &Triangles,
+    ) -> Option<TriangleId> {
+        let mut first = 0;
+        while first < WIDTH {
+            let corners: [Vector<L>; 3] =
+                [self.load(0, first), self.load(1, first), self.load(2, first)];
+            let claims = T::claims::<L>(lanes, &corners);
+            let mut candidates = claims.certain | claims.open;
+            while candidates != 0 {
+                let lane = candidates.trailing_zeros();
+                candidates &= candidates - 1;
+                let id = self.ids[first + lane as usize];
+                let certain = claims.certain & (1 << lane) != 0;
+                if certain || T::settle(ray, &triangles.get(id), triangles.slack()) {
+                    return Some(id);
+                }
+            }
+            first += L::COUNT;
+        }
+        None
+    }
+
+    #[inline(always)]
+    fn load<L: Lanes>(&self, corner: usize, first: usize) -> Vector<L> {
+        let [x, y, z] = &self.corners[corner];
+        [L::load(x, first), L::load(y, first), L::load(z, first)]
+    }
+}
+
+/// All opaque triangles of a scene, in clusters, and the tree over them.
+#[derive(Clone, Debug, Default)]
+pub struct Clusters {
+    clusters: Vec<Cluster>,
+    nodes: Vec<Node>,
+}
+
+impl Clusters {
+    /// Groups the opaque triangles, and builds the tree, in parallel.
+    #[must_use]
+    pub fn new(triangles: &Triangles) -> Self {
+        build::build(triangles)
+    }
+
+    /// The clusters; neighbours in space are neighbours here, mostly.
+    #[must_use]
+    #[inline(always)]
+    pub fn all(&self) -> &[Cluster] {
+        &self.clusters
+    }
+
+    /// The nodes of the tree, the root first; none without opaque triangles.
+    #[inline(always)]
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Bytes held.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        size_of_val(&*self.clusters) + size_of_val(&*self.nodes)
+    }
+}
