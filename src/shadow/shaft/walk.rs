@@ -1,0 +1,340 @@
+//! A bundle and a tree of clusters, walked together.
+//!
+//! Each step takes a part of the bundle and a node, and goes on to the node's boxes that the part's shaft
+//! meets. A part that is wider than a box is halved before it goes there; a packet that is still wider is taken
+//! apart, and its rays go on one by one. So rays that stay together share every step, and those that do not cost
+//! what they cost alone.
+
+use glam::DVec3;
+
+use super::bundle::{Bundle, PACKET, PACKETS, Source, packets_of};
+use super::frustum::{Met, Shaft};
+use super::planes::{Ground, Planes};
+use super::rays::PacketRays;
+use crate::exact::{Exact, certified};
+use crate::geometry::intersect::RayLanes;
+use crate::geometry::lanes::Lanes;
+use crate::geometry::{TriangleId, Triangles};
+use crate::occlusion::{Child, Clusters, Node, Tally, WIDTH};
+use crate::shadow::ShadowQuery;
+
+/// What is still to be visited: a part of the bundle, and a child.
+#[derive(Clone, Copy)]
+struct Step {
+    part: u8,
+    /// Of a packet, the queries whose rays meet the child's box: a bit each.
+    met: u16,
+    child: Child,
+}
+
+/// Half the box of a bundle counts as at least this part of the largest coordinate.
+const LEAST_HALF: f64 = 1.0 / (1u64 << 24) as f64;
+
+/// Clusters whose planes are kept: parts of a bundle come to the same ones. 8 KiB.
+const KEPT: usize = 16;
+
+/// Fewer rays of a packet than this go on one by one.
+const COMPANY: u32 = 8;
+
+/// What one worker needs for a bundle.
+pub(super) struct Walker {
+    pub bundle: Bundle,
+    shafts: [Shaft; 2 * PACKETS],
+    rays: [PacketRays; PACKETS],
+    /// Parts whose shaft is known: a bit each.
+    known: u32,
+    /// Packets whose rays are.
+    rays_known: u16,
+    /// Planes of clusters that were tested of late, and which clusters.
+    planes: [Planes; KEPT],
+    planes_of: [u32; KEPT],
+    steps: Vec<Step>,
+    /// The same for a ray that goes on alone.
+    rest: Vec<Child>,
+}
+
+/// What stays the same for a bundle.
+pub(super) struct Around<'a> {
+    pub clusters: &'a Clusters,
+    pub triangles: &'a Triangles,
+    pub queries: &'a [ShadowQuery],
+}
+
+const NOBODY: u32 = u32::MAX;
+
+impl Walker {
+    pub fn new() -> Self {
+        Self {
+            bundle: Bundle::empty(),
+            shafts: [Shaft::EMPTY; 2 * PACKETS],
+            rays: [PacketRays::EMPTY; PACKETS],
+            known: 0,
+            rays_known: 0,
+            planes: [const { Planes::EMPTY }; KEPT],
+            planes_of: [NOBODY; KEPT],
+            steps: Vec::new(),
+            rest: Vec::new(),
+        }
+    }
+
+    /// Settles all queries to this light: those that stay open are lit. `false` if none is to this light.
+    #[inline(always)]
+    pub fn walk<L: Lanes>(&mut self, source: &Source, around: &Around, tally: &mut Tally) -> bool {
+        if !self.bundle.fill(source, around.queries) {
+            return false;
+        }
+        let origins = &self.bundle.boxes[1];
+        // Origins that coincide must not make planes that are divided by nothing.
+        let least = f64::from(self.bundle.largest) * LEAST_HALF;
+        let half = origins.low.abs().max(origins.high.abs()).as_dvec3().max(DVec3::splat(least));
+        let ground = &Ground { source: *source, centre: self.bundle.centre(), half };
+        self.known = 0;
+        self.rays_known = 0;
+        self.planes_of = [NOBODY; KEPT];
+        self.steps.clear();
+        if around.clusters.nodes().is_empty() {
+            return true;
+        }
+        if around.queries.len() < COMPANY as usize {
+            let asked = self.bundle.open[0];
+            self.go_alone::<L>(0, asked, Child::Node(0), around, tally);
+            return true;
+        }
+        self.steps.push(Step { part: 1, met: u16::MAX, child: Child::Node(0) });
+        while let Some(step) = self.steps.pop() {
+            let index = usize::from(step.part);
+            if !self.bundle.is_open(index) {
+                continue;
+            }
+            match step.child {
+                Child::Node(number) => {
+                    tally.cells += 1;
+                    let node = &around.clusters.nodes()[number as usize];
+                    self.know(index, ground);
+                    let found = self.shafts[index].meets::<L>(node);
+                    if index < PACKETS {
+                        self.share(step, &found, node);
+                    } else {
+                        self.part::<L>(step, &found, node, around, tally);
+                    }
+                }
+                Child::Cluster(cluster) => {
+                    self.test::<L>(step, cluster, ground, around, tally);
+                }
+            }
+        }
+        true
+    }
+
+    /// Makes sure that the shaft of a part is known.
+    #[inline(always)]
+    fn know(&mut self, part: usize, ground: &Ground) {
+        if self.known & (1 << part) != 0 {
+            return;
+        }
+        self.known |= 1 << part;
+        let Bundle { boxes, centre, largest, .. } = &self.bundle;
+        self.shafts[part] = Shaft::new(&ground.source, *centre, &boxes[part], *largest);
+    }
+
+    /// The rays of a packet.
+    #[inline(always)]
+    fn rays_of(&mut self, packet: usize, around: &Around) -> &PacketRays {
+        if self.rays_known & (1 << packet) == 0 {
+            self.rays_known |= 1 << packet;
+            let queries = &around.queries[packet * PACKET..];
+            let queries = &queries[..queries.len().min(PACKET)];
+            self.rays[packet].set(queries, self.bundle.largest);
+        }
+        &self.rays[packet]
+    }
+
+    /// Sends a part to the boxes of a node that its shaft meets, or its halves back to the node, if the part
+    /// is wider than most of them.
+    #[inline(always)]
+    fn share(&mut self, step: Step, found: &Met, node: &Node) {
+        if 2 * found.narrower.count_ones() > found.met.count_ones() {
+            self.steps.push(Step { part: step.part * 2 + 1, ..step });
+            self.steps.push(Step { part: step.part * 2, ..step });
+            return;
+        }
+        let mut boxes = found.met;
+        while boxes != 0 {
+            let slot = boxes.trailing_zeros() as usize;
+            boxes &= boxes - 1;
+            self.steps.push(Step { child: node.child(slot), ..step });
+        }
+    }
+
+    /// Sends the rays of a packet to the boxes of a node that they meet; alone where they are few.
+    #[inline(always)]
+    fn part<L: Lanes>(
+        &mut self,
+        step: Step,
+        found: &Met,
+        node: &Node,
+        around: &Around,
+        tally: &mut Tally,
+    ) {
+        let packet = usize::from(step.part) - PACKETS;
+        let mut boxes = found.met;
+        while boxes != 0 {
+            let slot = boxes.trailing_zeros() as usize;
+            boxes &= boxes - 1;
+            let open = step.met & self.bundle.open[packet];
+            let child = node.child(slot);
+            // A shaft that is no wider than the box meets it with most of its rays.
+            let rays = if found.narrower & (1 << slot) != 0 {
+                open & self.rays_of(packet, around).meet::<L>(node, slot) as u16
+            } else {
+                open
+            };
+            if rays.count_ones() >= COMPANY {
+                self.steps.push(Step { met: rays, child, ..step });
+            } else if rays != 0 {
+                self.go_alone::<L>(packet, rays, child, around, tally);
+            }
+        }
+    }
+
+    /// Has rays of a packet visit a child one by one.
+    #[inline(always)]
+    fn go_alone<L: Lanes>(
+        &mut self,
+        packet: usize,
+        mut rays: u16,
+        child: Child,
+        around: &Around,
+        tally: &mut Tally,
+    ) {
+        while rays != 0 {
+            let lane = rays.trailing_zeros() as usize;
+            rays &= rays - 1;
+            let query = &around.queries[packet * PACKET + lane];
+            let ray = &query.ray;
+            let lanes = RayLanes::<L>::new(ray);
+            let shaft = Shaft::of_ray(ray, self.bundle.largest);
+            self.rest.clear();
+            self.rest.push(child);
+            while let Some(child) = self.rest.pop() {
+                match child {
+                    Child::Node(node) => {
+                        tally.cells += 1;
+                        let node = &around.clusters.nodes()[node as usize];
+                        let mut met = shaft.meets::<L>(node).met;
+                        while met != 0 {
+                            let slot = met.trailing_zeros();
+                            met &= met - 1;
+                            self.rest.push(node.child(slot as usize));
+                        }
+                    }
+                    Child::Cluster(cluster) => {
+                        tally.triangle_tests += WIDTH as u64;
+                        let cluster = &around.clusters.all()[cluster as usize];
+                        let blocker = cluster.meets::<Exact, L>(ray, &lanes, around.triangles);
+                        if blocker.is_some() {
+                            self.bundle.open[packet] &= !(1 << lane);
+                            break;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Tests the triangles of a cluster for a part of the bundle.
+    #[inline(always)]
+    fn test<L: Lanes>(
+        &mut self,
+        step: Step,
+        number: u32,
+        ground: &Ground,
+        around: &Around,
+        tally: &mut Tally,
+    ) {
+        let cluster = &around.clusters.all()[number as usize];
+        let kept = number as usize % KEPT;
+        if self.planes_of[kept] != number {
+            self.planes_of[kept] = number;
+            self.planes[kept].set(ground, cluster);
+        }
+
+        let mut candidates =
+            self.planes[kept].candidates(&self.bundle.boxes[usize::from(step.part)]);
+        while candidates != 0 {
+            let lane = candidates.trailing_zeros() as usize;
+            candidates &= candidates - 1;
+            if lane > 0 && cluster.ids()[lane] == cluster.ids()[lane - 1] {
+                continue;
+            }
+            self.cast::<L>(step, (kept, lane), cluster.ids()[lane], around, tally);
+        }
+    }
+
+    /// Casts the shadow of one triangle on a part of the bundle.
+    #[inline(always)]
+    fn cast<L: Lanes>(
+        &mut self,
+        step: Step,
+        (kept, lane): (usize, usize),
+        id: TriangleId,
+        around: &Around,
+        tally: &mut Tally,
+    ) {
+        let known = &self.planes[kept];
+        let unsided = known.unsided & (1 << lane) != 0;
+        let zero = L::splat(0.0);
+        let mut planes = [[zero; 4]; 4];
+        for (number, plane) in planes.iter_mut().enumerate() {
+            let [x, y, z] = &known.normals[number];
+            let value = &known.values[number];
+            *plane =
+                [L::splat(x[lane]), L::splat(y[lane]), L::splat(z[lane]), L::splat(value[lane])];
+        }
+        let (one, minus_one) = (L::splat(1.0), L::splat(-1.0));
+        let (first, last) = packets_of(usize::from(step.part));
+        for packet in first..last {
+            let open = self.bundle.open[packet] & step.met;
+            if open == 0 {
+                continue;
+            }
+            let (mut certain, mut missed) = (0u32, 0u32);
+            let mut offset = 0;
+            while offset < PACKET {
+                let start = packet * PACKET + offset;
+                let [x, y, z] = &self.bundle.origins;
+                let (x, y, z) =
+                    (L::load_from(x, start), L::load_from(y, start), L::load_from(z, start));
+                let mut least = L::splat(f32::INFINITY);
+                for [nx, ny, nz, value] in planes {
+                    least = least.min(nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, value))));
+                }
+                certain |= L::bits(one.less(least)) << offset;
+                missed |= L::bits(least.less(minus_one)) << offset;
+                offset += L::COUNT;
+            }
+            tally.triangle_tests += u64::from(open.count_ones());
+            if unsided {
+                (certain, missed) = (0, 0);
+            }
+            let open = u32::from(open);
+            let mut doubtful = open & !(certain | missed);
+            let mut blocked = open & certain;
+            while doubtful != 0 {
+                let query = doubtful.trailing_zeros();
+                doubtful &= doubtful - 1;
+                if self.settle(packet * PACKET + query as usize, id, around) {
+                    blocked |= 1 << query;
+                }
+            }
+            self.bundle.open[packet] &= !(blocked as u16);
+        }
+    }
+
+    /// Decides one triangle for one query.
+    #[cold]
+    fn settle(&self, query: usize, id: TriangleId, around: &Around) -> bool {
+        let query = &around.queries[query];
+        certified::blocks(&query.ray, &around.triangles.get(id))
+    }
+}
