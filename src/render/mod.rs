@@ -109,3 +109,24 @@ pub fn render(
     }
     Ok(Rendered { film, mask, answers, queries, statistics })
 }
+
+/// Hands over all shadow queries of a render, unit by unit, in the order of the units.
+///
+/// # Errors
+/// If the settings make no picture.
+pub fn record(
+    scene: &Scene,
+    backend: &dyn Occlusion,
+    shadows: &dyn Prepared,
+    settings: &Settings,
+    mut take: impl FnMut(Vec<RecordedQuery>),
+) -> Result<(), SettingsError> {
+    settings.check()?;
+    let settings = Settings { record: true, ..*settings };
+    let units = settings.order.units(settings.width, settings.height, settings.rows_per_unit);
+    for pixels in &units {
+        let unit = Unit::new(scene, backend, shadows, &settings);
+        take(unit.run(pixels, &Progress::default()).queries);
+    }
+    Ok(())
+}

@@ -143,7 +143,8 @@ fn open_counter() -> Option<File> {
 }
 
 /// Nanoseconds that the calling thread ran.
-fn thread_time() -> u64 {
+#[must_use]
+pub fn thread_time() -> u64 {
     let mut time = TimeSpec::default();
     // SAFETY: the call writes one `timespec`, whose layout on 64-bit systems this is.
     let outcome = unsafe { clock_gettime(THREAD_CPU_TIME, &raw mut time) };

@@ -21,7 +21,7 @@ use crate::scene::{SceneError, builtin};
 use crate::shadow::{LastVoxel, Method, MethodError, PerPath, Plan, ShadowTally, prepare};
 use lockstep::{Contestant, Taken, render_in_turns};
 
-pub use meter::{Meter, Unit};
+pub use meter::{Meter, Unit, thread_time};
 pub use published::{Published, Storage, TABLE, storage};
 pub use table::storage_table;
 pub use variants::{VARIANTS, Variant, VariantCost, VariantReport, compare_variants};
