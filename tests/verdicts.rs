@@ -386,3 +386,18 @@ fn rays_that_do_not_go_to_the_light_are_passed_on() {
         assert_eq!(tally.backend.invalid_rays, 1);
     }
 }
+
+#[test]
+fn a_fold_covers_nothing_beyond_its_edge() {
+    // Two sheets that hang together at an edge above the floor, both to its left.
+    let (near, far) = (vec3(0.3, 0.0, -9.0), vec3(0.3, 0.0, 9.0));
+    let floor = [vec3(-9.0, -2.0, -9.0), vec3(9.0, -2.0, -9.0), vec3(0.0, -2.0, 9.0)];
+    let mesh = [[near, far, vec3(-30.0, 0.0, 0.0)], [far, near, vec3(-30.0, 1.0, 0.0)], floor];
+    let lights = vec![point(vec3(0.0, 12.0, 0.0)), point(vec3(0.2, 9.0, 1.0)), sun(Vec3::Y)];
+    let scene = scene(&mesh, lights);
+    for seed in 0..4 {
+        for (kind, settled) in VerdictKind::ALL.iter().zip(check(&scene, 400, 100, seed)) {
+            assert!(settled.lit > 0 && settled.blocked > 0, "{kind}: {settled:?}");
+        }
+    }
+}
