@@ -56,7 +56,7 @@ fn statistics_say_what_each_verdict_took_and_settled() {
         let stats = fs::read(folder.path().join("out.json")).unwrap();
         serde_json::from_slice(&stats).unwrap()
     };
-    let plain = render("");
+    let plain = render("--shadows trace");
     assert_eq!(plain["shadows"], "trace");
     assert_eq!(plain["verdicts"], Value::Array(Vec::new()));
     let stats = render("--shadows shadow-polygons+voxel-occlusion+woo");
@@ -73,6 +73,32 @@ fn statistics_say_what_each_verdict_took_and_settled() {
     }
     let blocked = |stats: &Value| stats["counts"]["shadows"]["blocked"].clone();
     assert_eq!(blocked(&stats), blocked(&plain));
+}
+
+#[test]
+fn auto_is_shaft_before_the_exact_test_and_trace_elsewhere() {
+    let folder = folder();
+    let render = |arguments: &str| {
+        let line =
+            format!("render chair-room -o out.png --size 40x30 --stats out.json {arguments}");
+        let output = run(folder.path(), &line);
+        assert!(output.status.success(), "{}", said(&output));
+        let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
+        let stats: Value = serde_json::from_slice(&read("out.json")).unwrap();
+        (stats["shadows"].as_str().unwrap().to_owned(), read("out.png"))
+    };
+    let (_, traced) = render("--shadows trace");
+    for (arguments, chosen) in [
+        ("", "shaft"),
+        ("--shadows auto", "shaft"),
+        ("--order scanline", "shaft"),
+        ("--test pluecker", "trace"),
+        ("--self-shadow exclude", "trace"),
+    ] {
+        let (name, picture) = render(arguments);
+        assert_eq!(name, chosen, "{arguments}");
+        assert!(picture == traced || arguments.contains("exclude"), "{arguments}");
+    }
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! Arguments that several commands share.
 
+use std::fmt;
 use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::time::Instant;
 
 use clap::Args;
@@ -10,7 +12,7 @@ use super::failure::{Failure, say};
 use super::progress::with_word;
 use crate::occlusion::{Backend, BackendError, BuildOptions, GridOptions, Occlusion, Test, build};
 use crate::scene::Scene;
-use crate::shadow::{Combination, Method, Plan, Retest, SelfShadow};
+use crate::shadow::{Combination, CombinationError, Method, Plan, Retest, SelfShadow, VerdictKind};
 use crate::whole_file::{folder_of, write_whole};
 
 /// Voxels of a grid at most: 2 GiB before any triangle is in them.
@@ -176,7 +178,7 @@ pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure>
 #[derive(Args)]
 pub(super) struct ShadowOptions {
     #[arg(long, value_name = "METHOD", default_value_t, help = shadows_help())]
-    pub shadows: Combination,
+    shadows: Choice,
     /// What keeps a shadow ray from meeting the triangle that it starts on
     #[arg(long, value_enum, default_value_t)]
     self_shadow: SelfShadow,
@@ -197,16 +199,60 @@ pub(super) struct ShadowOptions {
 
 /// Names every method.
 fn shadows_help() -> String {
-    format!("What stands before the engine: {}", Combination::names())
+    format!(
+        "What stands before the engine: auto, which is shaft where the test is exact and trace elsewhere; or {}",
+        Combination::names()
+    )
+}
+
+/// A shadow method, or the program's choice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Choice {
+    #[default]
+    Auto,
+    Given(Combination),
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Auto => f.write_str("auto"),
+            Self::Given(combination) => combination.fmt(f),
+        }
+    }
+}
+
+impl FromStr for Choice {
+    type Err = CombinationError;
+
+    fn from_str(text: &str) -> Result<Self, CombinationError> {
+        if text == "auto" { Ok(Self::Auto) } else { text.parse().map(Self::Given) }
+    }
 }
 
 impl ShadowOptions {
-    /// The method with its options.
-    pub fn plan(&self) -> Plan {
+    /// What was asked for, or what suits the triangle test.
+    ///
+    /// A verdict's answers are those of exact arithmetic, so it is chosen before that test only; and it
+    /// does not go with leaving out the triangle that a ray starts on. Of the verdicts, `shaft` has nothing
+    /// to prepare for a light, so it does not have to pay off first (docs/fast.md has its figures).
+    pub fn combination(&self, test: Test) -> Combination {
+        match self.shadows {
+            Choice::Given(combination) => combination,
+            Choice::Auto if test == Test::Exact && self.self_shadow == SelfShadow::Offset => {
+                VerdictKind::Shaft.into()
+            }
+            Choice::Auto => Combination::default(),
+        }
+    }
+
+    /// The method with its options, before an engine with this test.
+    pub fn plan(&self, test: Test) -> Plan {
+        let combination = self.combination(test);
         Plan {
-            verdicts: self.shadows.verdicts,
+            verdicts: combination.verdicts,
             budget: None,
-            method: self.shadows.method,
+            method: combination.method,
             self_shadow: self.self_shadow,
             retest: self.retest,
             reset_scanlines: self.reset_scanlines,

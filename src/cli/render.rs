@@ -149,7 +149,7 @@ impl Render {
         }
         let (backend, build_seconds) = self.engine.build(&scene)?;
         let start = Instant::now();
-        let plan = Plan { budget: self.engine.memory, ..self.shadows.plan() };
+        let plan = Plan { budget: self.engine.memory, ..self.shadows.plan(self.engine.test()) };
         let shadows = prepare(plan, &scene, &*backend)?;
         let progress = Progress::default();
         let pixels = u64::from(settings.width) * u64::from(settings.height);
@@ -189,7 +189,7 @@ impl Render {
             scene.lights.len(),
             self.engine.backend,
             self.engine.test(),
-            self.shadows.shadows,
+            self.shadows.combination(self.engine.test()),
             rays.total(),
             rays.shadow,
             statistics.shadows.blocked,
@@ -209,7 +209,7 @@ impl Render {
             notes: &scene.notes,
             backend: self.engine.backend.name(),
             test: self.engine.test().name(),
-            shadows: self.shadows.shadows.to_string(),
+            shadows: self.shadows.combination(self.engine.test()).to_string(),
             verdicts,
             width: settings.width,
             height: settings.height,

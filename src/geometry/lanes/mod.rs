@@ -41,7 +41,7 @@ pub trait Kernel {
     fn run(self) -> Self::Answer;
 }
 
-/// Something to do in lanes of whatever kind: see [`Arithmetic::run`].
+/// Something to do in lanes of whatever kind: those of an [`Arithmetic`].
 pub trait LanesJob {
     /// What it gives.
     type Answer;
