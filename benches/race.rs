@@ -23,7 +23,7 @@ use umbra::shadow::{Answer, Combination, Prepared, ShadowQuery, Shadows, Trace, 
 const PART: usize = 100_000;
 
 /// Who runs with umbra's grid behind: by the names of the command line.
-const OURS: [&str; 3] = ["trace", "light-buffer", "shaft"];
+const OURS: [&str; 4] = ["trace", "light-buffer", "shaft", "shaft+light-buffer"];
 
 const USAGE: &str = "cargo bench --bench race -- SAMPLES SCENE…, like 3 drum chair-room";
 

@@ -76,7 +76,7 @@ fn statistics_say_what_each_verdict_took_and_settled() {
 }
 
 #[test]
-fn auto_is_shaft_before_the_exact_test_and_trace_elsewhere() {
+fn auto_is_shaft_and_light_buffer_before_the_exact_test_and_trace_elsewhere() {
     let folder = folder();
     let render = |arguments: &str| {
         let line =
@@ -89,9 +89,9 @@ fn auto_is_shaft_before_the_exact_test_and_trace_elsewhere() {
     };
     let (_, traced) = render("--shadows trace");
     for (arguments, chosen) in [
-        ("", "shaft"),
-        ("--shadows auto", "shaft"),
-        ("--order scanline", "shaft"),
+        ("", "shaft+light-buffer"),
+        ("--shadows auto", "shaft+light-buffer"),
+        ("--order scanline", "shaft+light-buffer"),
         ("--test pluecker", "trace"),
         ("--self-shadow exclude", "trace"),
     ] {

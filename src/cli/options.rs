@@ -12,7 +12,9 @@ use super::failure::{Failure, say};
 use super::progress::with_word;
 use crate::occlusion::{Backend, BackendError, BuildOptions, GridOptions, Occlusion, Test, build};
 use crate::scene::Scene;
-use crate::shadow::{Combination, CombinationError, Method, Plan, Retest, SelfShadow, VerdictKind};
+use crate::shadow::{
+    Combination, CombinationError, Method, Plan, Retest, SelfShadow, VerdictKind, VerdictSet,
+};
 use crate::whole_file::{folder_of, write_whole};
 
 /// Voxels of a grid at most: 2 GiB before any triangle is in them.
@@ -200,7 +202,7 @@ pub(super) struct ShadowOptions {
 /// Names every method.
 fn shadows_help() -> String {
     format!(
-        "What stands before the engine: auto, which is shaft where the test is exact and trace elsewhere; or {}",
+        "What stands before the engine: auto, which is shaft+light-buffer where the test is exact and trace elsewhere; or {}",
         Combination::names()
     )
 }
@@ -233,14 +235,16 @@ impl FromStr for Choice {
 impl ShadowOptions {
     /// What was asked for, or what suits the triangle test.
     ///
-    /// A verdict's answers are those of exact arithmetic, so it is chosen before that test only; and it
-    /// does not go with leaving out the triangle that a ray starts on. Of the verdicts, `shaft` has nothing
-    /// to prepare for a light, so it does not have to pay off first (docs/fast.md has its figures).
+    /// A verdict's answers are those of exact arithmetic, so verdicts are chosen before that test only; and they
+    /// do not go with leaving out the triangle that a ray starts on. Shafts have nothing to prepare for a light, and
+    /// leave to the light buffer what does not stay together, bundle by bundle (docs/fast.md has the figures).
     pub fn combination(&self, test: Test) -> Combination {
         match self.shadows {
             Choice::Given(combination) => combination,
             Choice::Auto if test == Test::Exact && self.self_shadow == SelfShadow::Offset => {
-                VerdictKind::Shaft.into()
+                let verdicts =
+                    VerdictSet::NONE.with(VerdictKind::Shaft).with(VerdictKind::LightBuffer);
+                Combination { verdicts, ..Combination::default() }
             }
             Choice::Auto => Combination::default(),
         }

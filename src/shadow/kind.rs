@@ -1,17 +1,15 @@
 //! From names to verdicts.
 
 use std::fmt;
-use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::Verdict;
 use super::light_buffer::LightBuffer;
 use super::shadow_polygons::ShadowPolygons;
 use super::shaft::Shafts;
+use super::stock::Stock;
 use super::voxel_occlusion::VoxelOcclusion;
-use super::{Budget, Verdict};
-use crate::occlusion::Occlusion;
-use crate::scene::Scene;
 
 /// The verdicts, in the order in which they are asked: cheap ones first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -53,15 +51,11 @@ impl VerdictKind {
     }
 
     /// Makes it ready for a scene before a backend, within the memory that is left.
-    pub(super) fn prepare<'a>(
-        self,
-        scene: &Scene,
-        _backend: &'a dyn Occlusion,
-        budget: &Arc<Budget>,
-    ) -> Box<dyn Verdict + 'a> {
+    pub(super) fn prepare(self, stock: &Stock<'_>) -> Box<dyn Verdict> {
+        let Stock { scene, budget, .. } = stock;
         match self {
-            Self::Shaft => Box::new(Shafts::new(scene, budget)),
-            Self::LightBuffer => Box::new(LightBuffer::new(scene, budget.clone())),
+            Self::Shaft => Box::new(Shafts::new(stock)),
+            Self::LightBuffer => Box::new(LightBuffer::new(stock)),
             Self::VoxelOcclusion => Box::new(VoxelOcclusion::new(scene, budget)),
             Self::ShadowPolygons => Box::new(ShadowPolygons::new(scene, budget)),
         }

@@ -30,6 +30,7 @@ mod query;
 mod shadow_polygons;
 mod shaft;
 mod shelf;
+mod stock;
 mod tally;
 mod tolerance;
 mod trace;

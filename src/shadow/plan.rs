@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use clap::ValueEnum;
 
+use super::stock::Stock;
 use super::{
     Budget, Cached, Combination, Forgetful, LastCell, LastOccluder, LastVoxel, Memory, Method,
     Nearby, Path, PerLight, PerPath, Prepared, Retest, Shelf, Tolerance, Trace, VerdictSet,
@@ -134,9 +135,10 @@ fn prepare_verdicts<'a>(plan: &Plan, scene: &Scene, backend: &'a dyn Occlusion) 
     let mut verdicts = Verdicts::default();
     if !plan.verdicts.is_empty() {
         let limit = plan.budget.unwrap_or_else(default_budget);
-        let budget = Arc::new(Budget::new(limit.saturating_sub(backend.memory() as u64)));
+        let budget = Budget::new(limit.saturating_sub(backend.memory() as u64));
+        let stock = Stock::new(scene, Arc::new(budget), plan.verdicts);
         for kind in plan.verdicts.iter() {
-            verdicts.push(kind, || kind.prepare(scene, backend, &budget));
+            verdicts.push(kind, || kind.prepare(&stock));
         }
     }
     verdicts

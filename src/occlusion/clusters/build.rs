@@ -27,11 +27,13 @@ pub(super) fn build(triangles: &Triangles) -> Clusters {
         return Clusters::default();
     }
     let tree = arrange(&mut items, 0);
-    let clusters = items.chunks(WIDTH).map(|run| cluster(triangles, run)).collect();
+    let clusters: Vec<Cluster> = items.chunks(WIDTH).map(|run| cluster(triangles, run)).collect();
     let mut nodes = Vec::new();
     collapse(&tree, &mut nodes);
     nodes.shrink_to_fit();
-    Clusters { clusters, nodes }
+    let sum: f64 = nodes.iter().map(Node::sum_of_cluster_extents).sum();
+    let typical_extent = (sum / clusters.len() as f64) as f32;
+    Clusters { clusters, nodes, typical_extent }
 }
 
 fn cluster(triangles: &Triangles, run: &[Item]) -> Cluster {

@@ -82,6 +82,7 @@ impl Cluster {
 pub struct Clusters {
     clusters: Vec<Cluster>,
     nodes: Vec<Node>,
+    typical_extent: f32,
 }
 
 impl Clusters {
@@ -102,6 +103,12 @@ impl Clusters {
     #[inline(always)]
     pub(crate) fn nodes(&self) -> &[Node] {
         &self.nodes
+    }
+
+    /// The mean of the longest sides of clusters' boxes.
+    #[inline(always)]
+    pub(crate) fn typical_extent(&self) -> f32 {
+        self.typical_extent
     }
 
     /// Bytes held.

@@ -52,4 +52,10 @@ impl Node {
         let child = self.children[slot];
         if child & CLUSTER == 0 { Child::Node(child) } else { Child::Cluster(child & !CLUSTER) }
     }
+
+    /// Of its clusters, the sum of the longest sides of the boxes.
+    pub fn sum_of_cluster_extents(&self) -> f64 {
+        let clusters = (0..WIDTH).filter(|&slot| self.children[slot] & CLUSTER != 0);
+        clusters.map(|slot| f64::from(self.extent[slot])).sum()
+    }
 }

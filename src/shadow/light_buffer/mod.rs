@@ -27,23 +27,21 @@ use std::time::Instant;
 use block::Asked;
 use map::LightMap;
 
+use super::stock::Stock;
 use super::{Budget, ShadowQuery, Verdict};
 use crate::exact::Exact;
 use crate::geometry::Triangles;
 use crate::geometry::intersect::RayLanes;
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally, WIDTH};
-use crate::scene::{Light, Scene};
-
-/// Bytes of clusters and their tree to a triangle, somewhat more than they turn out to take.
-pub(super) const CLUSTER_BYTES: usize = 48;
+use crate::scene::Light;
 
 /// The light buffers of a scene, filled as queries ask.
 pub(super) struct LightBuffer {
     triangles: Arc<Triangles>,
     lights: Vec<Light>,
     /// None if the memory does not suffice.
-    clusters: Option<Clusters>,
+    clusters: Option<Arc<Clusters>>,
     maps: Vec<OnceLock<Option<LightMap>>>,
     arithmetic: Arithmetic,
     budget: Arc<Budget>,
@@ -55,17 +53,16 @@ pub(super) struct LightBuffer {
 
 impl LightBuffer {
     /// Groups the triangles; what lights see is made when they are asked.
-    pub fn new(scene: &Scene, budget: Arc<Budget>) -> Self {
-        let estimate = CLUSTER_BYTES * scene.triangles.len();
-        let clusters = budget.take(estimate).then(|| Clusters::new(&scene.triangles));
-        let bytes = clusters.as_ref().map_or(0, Clusters::memory);
+    pub fn new(stock: &Stock<'_>) -> Self {
+        let Stock { scene, budget, .. } = stock;
+        let (clusters, bytes) = stock.clusters();
         Self {
             triangles: scene.triangles.clone(),
             lights: scene.lights.clone(),
             clusters,
             maps: scene.lights.iter().map(|_| OnceLock::new()).collect(),
             arithmetic: Arithmetic::of_this_cpu(),
-            budget,
+            budget: budget.clone(),
             bytes: AtomicUsize::new(bytes),
             nanoseconds: AtomicU64::new(0),
             refused: AtomicU64::new(0),
@@ -146,6 +143,10 @@ impl Verdict for LightBuffer {
         settled: &mut [Option<bool>],
         tally: &mut Tally,
     ) {
+        if settled.iter().all(Option::is_some) {
+            // Nothing is made for a light that nobody asks about.
+            return;
+        }
         if let (Some(map), Some(clusters)) = (self.map(light), &self.clusters) {
             self.arithmetic.run(Settle { buffer: self, map, clusters, queries, settled, tally });
         }
@@ -204,6 +205,7 @@ mod tests {
     use super::*;
     use crate::exact::certified;
     use crate::scene::{Draft, DraftTriangle};
+    use crate::shadow::VerdictSet;
 
     /// A bumpy sheet of triangles, closed in itself.
     fn globe(rings: u32) -> Vec<[Vec3; 3]> {
@@ -244,7 +246,11 @@ mod tests {
         let triangles = mesh.iter().map(triangle).collect();
         let lights = lights.map(point).to_vec();
         let scene = Draft { triangles, lights, ..Draft::default() }.finish().unwrap();
-        let buffer = LightBuffer::new(&scene, Arc::new(Budget::new(u64::MAX)));
+        let buffer = LightBuffer::new(&Stock::new(
+            &scene,
+            Arc::new(Budget::new(u64::MAX)),
+            VerdictSet::NONE,
+        ));
         let all = buffer.clusters.as_ref().unwrap().all();
         let mut blockers = 0;
         for (number, light) in scene.lights.iter().enumerate() {

@@ -9,6 +9,8 @@
 //! Wins where neighbouring queries start near each other, the more samples the better. Where they do not, parts of a bundle
 //! go on by themselves, in the end ray by ray.
 //!
+//! With a light buffer behind it, bundles that do not stay together are left to that: `shaft+light-buffer`.
+//!
 //! Exact: a query is settled by a plane that is certain by more than its error bound (`planes`), else by the
 //! exact test. Rays that are not to their light, bit for bit, are passed on.
 //!
@@ -26,19 +28,22 @@ use std::sync::{Arc, Mutex, PoisonError};
 use bundle::{BUNDLE, PACKET, Source};
 use walk::{Around, Walker};
 
-use super::light_buffer::CLUSTER_BYTES;
-use super::{Budget, ShadowQuery, Verdict};
+use super::stock::Stock;
+use super::{ShadowQuery, Verdict, VerdictKind};
 use crate::geometry::Triangles;
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally};
-use crate::scene::Scene;
 
 /// Shafts to the lights of a scene.
 pub(super) struct Shafts {
     triangles: Arc<Triangles>,
     sources: Vec<Source>,
     /// None if the memory does not suffice.
-    clusters: Option<Clusters>,
+    clusters: Option<Arc<Clusters>>,
+    /// Bytes of them, if nobody else counts them.
+    bytes: usize,
+    /// Whether bundles that do not stay together are left to a light buffer.
+    leaves_spread: bool,
     arithmetic: Arithmetic,
     /// Walkers that nobody uses now; as many are made as threads ask at once, 40 KiB each.
     idle: Mutex<Vec<Box<Walker>>>,
@@ -46,12 +51,14 @@ pub(super) struct Shafts {
 
 impl Shafts {
     /// Groups the triangles; there is nothing to prepare for lights.
-    pub fn new(scene: &Scene, budget: &Budget) -> Self {
-        let estimate = CLUSTER_BYTES * scene.triangles.len();
+    pub fn new(stock: &Stock<'_>) -> Self {
+        let (scene, (clusters, bytes)) = (stock.scene, stock.clusters());
         Self {
             triangles: scene.triangles.clone(),
             sources: scene.lights.iter().map(Source::new).collect(),
-            clusters: budget.take(estimate).then(|| Clusters::new(&scene.triangles)),
+            clusters,
+            bytes,
+            leaves_spread: stock.verdicts.contains(VerdictKind::LightBuffer),
             arithmetic: Arithmetic::of_this_cpu(),
             idle: Mutex::new(Vec::new()),
         }
@@ -80,7 +87,9 @@ impl Verdict for Shafts {
         let Some(clusters) = &self.clusters else { return };
         let mut walker = self.walker();
         for (queries, settled) in queries.chunks(BUNDLE).zip(settled.chunks_mut(BUNDLE)) {
-            let around = Around { clusters, triangles: &self.triangles, queries };
+            let leaves_spread = self.leaves_spread;
+            let triangles = &self.triangles;
+            let around = Around { clusters, triangles, queries, leaves_spread };
             let source = &self.sources[light];
             let walk = Walk { walker: &mut walker, source, around, tally };
             if !self.arithmetic.run(walk) {
@@ -97,7 +106,7 @@ impl Verdict for Shafts {
     }
 
     fn memory(&self) -> usize {
-        self.clusters.as_ref().map_or(0, Clusters::memory)
+        self.bytes
     }
 
     fn notes(&self) -> Vec<String> {

@@ -58,6 +58,8 @@ pub(super) struct Around<'a> {
     pub clusters: &'a Clusters,
     pub triangles: &'a Triangles,
     pub queries: &'a [ShadowQuery],
+    /// Whether a bundle that does not stay together is passed on.
+    pub leaves_spread: bool,
 }
 
 const NOBODY: u32 = u32::MAX;
@@ -80,7 +82,9 @@ impl Walker {
     /// Settles all queries to this light: those that stay open are lit. `false` if none is to this light.
     #[inline(always)]
     pub fn walk<L: Lanes>(&mut self, source: &Source, around: &Around, tally: &mut Tally) -> bool {
-        if !self.bundle.fill(source, around.queries) {
+        if !self.bundle.fill(source, around.queries)
+            || (around.leaves_spread && self.bundle.is_spread(around.clusters.typical_extent()))
+        {
             return false;
         }
         let origins = &self.bundle.boxes[1];
