@@ -26,6 +26,8 @@ pub(super) struct Block {
     keys: Vec<u32>,
     /// Of each entry, the cluster.
     clusters: Vec<u32>,
+    /// Of each cell, the depth behind which it is dark; none if no cell is.
+    full: Vec<f32>,
 }
 
 /// Codes of depths.
@@ -39,6 +41,8 @@ pub(super) struct Asked<'a> {
     pub last: u32,
     /// The bit of the query's fine cell.
     pub fine: u32,
+    /// Whether one triangle is known to stand before all of the cell, and the query behind it.
+    pub dark: bool,
 }
 
 impl Block {
@@ -55,11 +59,14 @@ impl Block {
         let cells = (1 << wanted.max(1.0).log2().round() as u32).min(MOST_CELLS);
         let window = Window { face, low, side, cells };
         let mut covered = Covered::new();
+        let mut full = vec![f32::INFINITY; cells * cells];
         // The least depth, the cluster, and its part of `covered`.
         let mut listed: Vec<(f32, u32, u32, u32)> = Vec::with_capacity(members.len());
         for &member in members {
             let start = covered.len() as u32;
-            if let Some(depth) = cover(view, &window, &all[member as usize], &mut covered) {
+            if let Some(depth) =
+                cover(view, &window, &all[member as usize], &mut covered, &mut full)
+            {
                 listed.push((depth, member, start, covered.len() as u32));
             }
         }
@@ -87,7 +94,10 @@ impl Block {
                 *place += 1;
             }
         }
-        Self { window, scale: cells as f32 / side, least, codes, starts, keys, clusters }
+        if full.iter().all(|depth| depth.is_infinite()) {
+            full = Vec::new();
+        }
+        Self { window, scale: cells as f32 / side, least, codes, starts, keys, clusters, full }
     }
 
     /// The list for a query at this place of the block.
@@ -108,6 +118,7 @@ impl Block {
             clusters: &self.clusters[list],
             last: code << 16 | 0xffff,
             fine: 1 << (FINE * (row % FINE) + column % FINE),
+            dark: self.full.get(cell).is_some_and(|&full| depth > full),
         }
     }
 
@@ -117,5 +128,6 @@ impl Block {
             + size_of_val(&*self.starts)
             + size_of_val(&*self.keys)
             + size_of_val(&*self.clusters)
+            + size_of_val(&*self.full)
     }
 }

@@ -3,7 +3,7 @@
 //! Conservative: whatever comes within the view's `pad` of one of the cluster's triangles is covered. A small
 //! cluster is its rectangle; of a large one each triangle is clipped to the face and drawn row by row.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use super::view::{LightView, SLACK, View};
 use crate::occlusion::{Cluster, WIDTH};
@@ -57,19 +57,21 @@ impl Window {
 /// Cells of a window, each with the bits of its fine ones.
 pub(super) type Covered = Vec<(u16, u16)>;
 
-/// Adds the cells that the cluster covers; gives the least depth at which it does.
+/// Adds the cells that the cluster covers; gives the least depth at which it does. Lowers the depths in `full`
+/// behind which a cell is dark, where one of the triangles covers a whole cell.
 pub(super) fn cover(
     view: &LightView,
     window: &Window,
     cluster: &Cluster,
     covered: &mut Covered,
+    full: &mut [f32],
 ) -> Option<f32> {
     match rectangle(view, window, cluster) {
         Rectangle::Outside => None,
         Rectangle::Inside { columns, rows, depth } => {
             let cells = |(first, last): (usize, usize)| last / FINE - first / FINE;
             if cells(columns) > COARSE && cells(rows) > COARSE {
-                return draw(view, window, cluster, covered);
+                return draw(view, window, cluster, covered, full);
             }
             for row in rows.0 / FINE..=rows.1 / FINE {
                 let vertical = bits_within(rows, row) as u16;
@@ -81,7 +83,7 @@ pub(super) fn cover(
             }
             Some(depth)
         }
-        Rectangle::Steep => draw(view, window, cluster, covered),
+        Rectangle::Steep => draw(view, window, cluster, covered, full),
     }
 }
 
@@ -149,6 +151,7 @@ fn draw(
     window: &Window,
     cluster: &Cluster,
     covered: &mut Covered,
+    full: &mut [f32],
 ) -> Option<f32> {
     let fine = window.fine();
     // A bit a fine cell, row by row: at most 256 rows of 256.
@@ -162,6 +165,7 @@ fn draw(
             let [x, y, z] = cluster.corner(corner);
             view.across(window.face, Vec3::new(x[lane], y[lane], z[lane])).as_dvec3()
         });
+        darken(view, window, &corners, full);
         let polygon = clip(view, window, &corners);
         depth = polygon.iter().fold(depth, |depth, corner| depth.min(corner.z as f32));
         rows(view, window, &polygon, &mut bits);
@@ -180,6 +184,62 @@ fn draw(
         }
     }
     (covered.len() > before).then_some(depth - view.pad)
+}
+
+/// Notes where one triangle covers whole cells, widened by all that a query's place and ray may err by: whoever is
+/// behind it there, by more than the padding, is in its shadow. It must lie beyond `near` as a whole.
+fn darken(view: &LightView, window: &Window, corners: &[DVec3; 3], full: &mut [f32]) {
+    let pad = f64::from(view.pad);
+    let nearest = corners.iter().fold(f64::INFINITY, |least, corner| least.min(corner.z));
+    let (divisors, reach) = match view.view {
+        View::Cube { .. } if nearest < f64::from(view.near) => return,
+        View::Cube { .. } => (corners.map(|corner| corner.z), 3.0 * pad / nearest),
+        View::Parallel { half, .. } => ([f64::from(half); 3], 3.0 * pad / f64::from(half)),
+    };
+    let [a, b, c] = [0, 1, 2].map(|i| corners[i].truncate() / divisors[i]);
+    // Inside, all three edges have the sign of the area.
+    let area = (b - a).perp_dot(c - a);
+    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    let height = normal.dot(corners[0]);
+    let depth = |place: DVec2| match view.view {
+        View::Cube { .. } => height / normal.dot(place.extend(1.0)),
+        View::Parallel { half, .. } => {
+            let across = f64::from(half) * place;
+            (height - normal.truncate().dot(across)) / normal.z
+        }
+    };
+    let side = f64::from(window.side) / window.cells as f64;
+    // As much as in `Window::range`, twice.
+    let margin = reach + f64::from(SLACK) + side / FINE as f64 / 128.0;
+    let low = DVec2::new(f64::from(window.low[0]), f64::from(window.low[1]));
+    let cells = |least: f64, most: f64| {
+        let last = window.cells as f64;
+        let first = ((least / side).ceil().clamp(0.0, last)) as usize;
+        first..((most / side).floor().clamp(0.0, last) as usize).max(first)
+    };
+    let (least, most) = (a.min(b).min(c) - low, a.max(b).max(c) - low);
+    for row in cells(least.y, most.y) {
+        for column in cells(least.x, most.x) {
+            let middle = low + side * DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
+            let half = 0.5 * side + margin;
+            let inside = [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| {
+                let edge = (to - from) * area.signum();
+                let lever = (edge.x.abs() + edge.y.abs()) * half;
+                edge.perp_dot(middle - from) > lever * (1.0 + 1e-9) + f64::MIN_POSITIVE
+            });
+            if !inside {
+                continue;
+            }
+            let corners = [(-half, -half), (-half, half), (half, -half), (half, half)];
+            let farthest = corners.iter().fold(0f64, |farthest, &(x, y)| {
+                let depth = depth(middle + DVec2::new(x, y));
+                if depth > 0.0 { farthest.max(depth) } else { f64::INFINITY }
+            });
+            let dark = (farthest + 4.0 * pad) as f32;
+            let full = &mut full[row * window.cells + column];
+            *full = full.min(dark);
+        }
+    }
 }
 
 /// Clips a triangle to the pyramid that the window sees, a little enlarged.
