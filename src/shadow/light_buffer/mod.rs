@@ -259,8 +259,17 @@ mod tests {
         let (mut blockers, mut dark) = (0, 0);
         for (number, light) in scene.lights.iter().enumerate() {
             let map = buffer.map(number).expect("few clusters are near");
+            let Light::Point { position, .. } = light else { unreachable!("all are points") };
+            let position = position.as_vec3();
             let places = globe(13).into_iter();
-            for origin in places.flat_map(|[a, b, c]| [0.9 * a, 1.3 * b, 0.3 * c]) {
+            let places = places.flat_map(|[a, b, c]| [0.9 * a, 1.3 * b, 0.3 * c]);
+            // And where two or three faces of the cube meet.
+            let sides = [-1.0, -0.4, 0.4, 1.0];
+            let corners = sides.into_iter().flat_map(|x| {
+                sides.into_iter().flat_map(move |y| sides.into_iter().map(move |z| (x, y, z)))
+            });
+            let corners = corners.map(|(x, y, z)| position + 0.7 * Vec3::new(x, y, z));
+            for origin in places.chain(corners) {
                 let ray = light.shadow_ray(origin);
                 let Some(asked) = map.ask(&ray, all, &buffer) else { continue };
                 let blocked = (0..scene.triangles.len() as u32)
