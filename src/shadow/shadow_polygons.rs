@@ -30,6 +30,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
+use super::verdict::settle_each;
 use super::voxels::{Neighbours, Source, Voxels};
 use super::{Budget, ShadowQuery, Verdict};
 use crate::occlusion::Tally;
@@ -95,8 +96,9 @@ impl ShadowPolygons {
     }
 }
 
-impl Verdict for ShadowPolygons {
-    fn settle(&self, light: usize, query: &ShadowQuery, _: &mut Tally) -> Option<bool> {
+impl ShadowPolygons {
+    /// Whether one query is blocked, if that is proven.
+    fn settle(&self, light: usize, query: &ShadowQuery) -> Option<bool> {
         let (voxels, neighbours) = self.prepared.as_ref()?;
         let light = self.lights.get(light)?;
         let source = light.source.as_ref()?;
@@ -119,6 +121,18 @@ impl Verdict for ShadowPolygons {
             return None;
         }
         Some(region.count_at(point, source, voxels)? > 0)
+    }
+}
+
+impl Verdict for ShadowPolygons {
+    fn settle_many(
+        &self,
+        light: usize,
+        queries: &[ShadowQuery],
+        settled: &mut [Option<bool>],
+        _: &mut Tally,
+    ) {
+        settle_each(queries, settled, |query| self.settle(light, query));
     }
 
     fn memory(&self) -> usize {

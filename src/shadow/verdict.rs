@@ -13,23 +13,15 @@ use crate::occlusion::Tally;
 /// with the exact test its answers are the backend's, bit for bit, whatever the order of queries and
 /// the number of threads. It passes on rays that are not valid, and rays that do not end at its light.
 pub trait Verdict: Send + Sync {
-    /// Whether the query is blocked; `None` where that is not proven. What it costs goes to `tally`.
-    fn settle(&self, light: usize, query: &ShadowQuery, tally: &mut Tally) -> Option<bool>;
-
-    /// The same for queries towards one light, as far as they are not settled yet.
+    /// Whether queries towards one light are blocked, as far as they are not settled yet; `None` stays where that is
+    /// not proven. What it costs goes to `tally`.
     fn settle_many(
         &self,
         light: usize,
         queries: &[ShadowQuery],
         settled: &mut [Option<bool>],
         tally: &mut Tally,
-    ) {
-        for (query, settled) in queries.iter().zip(settled) {
-            if settled.is_none() {
-                *settled = self.settle(light, query, tally);
-            }
-        }
-    }
+    );
 
     /// Bytes of what was prepared so far.
     fn memory(&self) -> usize;
@@ -42,6 +34,19 @@ pub trait Verdict: Send + Sync {
     /// What the user should know: that it had to be made coarser, or steps aside.
     fn notes(&self) -> Vec<String> {
         Vec::new()
+    }
+}
+
+/// Settles one by one what is not settled yet.
+pub(super) fn settle_each(
+    queries: &[ShadowQuery],
+    settled: &mut [Option<bool>],
+    mut settle: impl FnMut(&ShadowQuery) -> Option<bool>,
+) {
+    for (query, settled) in queries.iter().zip(settled) {
+        if settled.is_none() {
+            *settled = settle(query);
+        }
     }
 }
 

@@ -28,6 +28,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::time::Instant;
 
+use super::verdict::settle_each;
 use super::voxels::{Neighbours, Shaft, Source, Voxels};
 use super::{Budget, ShadowQuery, Verdict};
 use crate::occlusion::Tally;
@@ -147,7 +148,8 @@ impl VoxelOcclusion {
     }
 }
 
-impl Verdict for VoxelOcclusion {
+impl VoxelOcclusion {
+    /// Whether one query is blocked, if that is proven.
     fn settle(&self, light: usize, query: &ShadowQuery, tally: &mut Tally) -> Option<bool> {
         let (voxels, _) = self.prepared.as_ref()?;
         let light = self.lights.get(light)?;
@@ -174,6 +176,18 @@ impl Verdict for VoxelOcclusion {
             }
         }
         None
+    }
+}
+
+impl Verdict for VoxelOcclusion {
+    fn settle_many(
+        &self,
+        light: usize,
+        queries: &[ShadowQuery],
+        settled: &mut [Option<bool>],
+        tally: &mut Tally,
+    ) {
+        settle_each(queries, settled, |query| self.settle(light, query, tally));
     }
 
     fn memory(&self) -> usize {

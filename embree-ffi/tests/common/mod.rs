@@ -1,5 +1,5 @@
 //! Scenes and rays the tests share. Embree must be there: a test without it fails, with the one line that says why.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "each test binary uses a part of it")]
 
 use embree_ffi::{Device, DeviceConfig, Isa, Mesh, Ray, Scene, SceneBuilder, SceneOptions};
 

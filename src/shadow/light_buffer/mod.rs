@@ -134,12 +134,6 @@ impl LightBuffer {
 }
 
 impl Verdict for LightBuffer {
-    fn settle(&self, light: usize, query: &ShadowQuery, tally: &mut Tally) -> Option<bool> {
-        let mut settled = [None];
-        self.settle_many(light, std::slice::from_ref(query), &mut settled, tally);
-        settled[0]
-    }
-
     fn settle_many(
         &self,
         light: usize,

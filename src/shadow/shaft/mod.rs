@@ -71,12 +71,6 @@ impl Shafts {
 }
 
 impl Verdict for Shafts {
-    fn settle(&self, light: usize, query: &ShadowQuery, tally: &mut Tally) -> Option<bool> {
-        let mut settled = [None];
-        self.settle_many(light, std::slice::from_ref(query), &mut settled, tally);
-        settled[0]
-    }
-
     fn settle_many(
         &self,
         light: usize,
