@@ -74,6 +74,19 @@ pub struct Settled {
     pub passed_on: u64,
 }
 
+impl Settled {
+    fn of(settled: &[Option<bool>]) -> Self {
+        let (lit, blocked) = (count(settled, Some(false)), count(settled, Some(true)));
+        Self { lit, blocked, passed_on: settled.len() as u64 - lit - blocked }
+    }
+}
+
+/// How many are such. In sums of a byte that do not overflow: those are added sixteen at once.
+fn count(settled: &[Option<bool>], such: Option<bool>) -> u64 {
+    let sum = |run: &[Option<bool>]| run.iter().map(|&one| u8::from(one == such)).sum::<u8>();
+    settled.chunks(usize::from(u8::MAX)).map(|run| u64::from(sum(run))).sum()
+}
+
 impl std::ops::AddAssign for Settled {
     fn add_assign(&mut self, other: Self) {
         self.lit += other.lit;
@@ -107,27 +120,21 @@ impl<'a> Verdicts<'a> {
         self.0.is_empty()
     }
 
-    /// Settles what any of them can; a call for each, however many queries.
+    /// Settles what any of them can; a call for each, however many queries. Gives what all of
+    /// them together made of it.
     pub fn settle(
         &self,
         light: usize,
         queries: &[ShadowQuery],
         settled: &mut Vec<Option<bool>>,
         tally: &mut ShadowTally,
-    ) {
+    ) -> Settled {
         settled.clear();
         settled.resize(queries.len(), None);
         let mut before = Settled { passed_on: queries.len() as u64, ..Settled::default() };
         for Stacked { kind, verdict, .. } in &self.0 {
             verdict.settle_many(light, queries, settled, &mut tally.backend);
-            let mut after = Settled::default();
-            for settled in &*settled {
-                match settled {
-                    Some(false) => after.lit += 1,
-                    Some(true) => after.blocked += 1,
-                    None => after.passed_on += 1,
-                }
-            }
+            let after = Settled::of(settled);
             tally.verdicts[kind.index()] += Settled {
                 lit: after.lit - before.lit,
                 blocked: after.blocked - before.blocked,
@@ -135,6 +142,7 @@ impl<'a> Verdicts<'a> {
             };
             before = after;
         }
+        before
     }
 
     /// Bytes of what was prepared so far.

@@ -6,8 +6,9 @@
 //! A shaft with nothing in it proves them lit, all at once. Nothing is prepared a light, so many lights cost no
 //! more than few.
 //!
-//! Wins where neighbouring queries start near each other, the more samples the better. Where they do not, parts of a bundle
-//! go on by themselves, in the end ray by ray.
+//! Wins where neighbouring queries start near each other, the more samples the better. Bundles that do not stay together,
+//! as those that mirrors see, are put together anew by place (`order`); where that does not help, parts of a bundle go
+//! on by themselves, in the end ray by ray.
 //!
 //! With a light buffer behind it, bundles that do not stay together are left to that: `shaft+light-buffer`.
 //!
@@ -19,20 +20,27 @@
 
 mod bundle;
 mod frustum;
+mod order;
 mod planes;
 mod rays;
 mod walk;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use bundle::{BUNDLE, PACKET, Source};
-use walk::{Around, Walker};
+use bundle::{BUNDLE, Chosen, PACKET, Source};
+use walk::{Apart, Around, Outcome, Walker};
 
 use super::stock::Stock;
 use super::{ShadowQuery, Verdict, VerdictKind};
 use crate::geometry::Triangles;
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally};
+
+/// Bundles that are apart like this are put together anew, by place.
+const SORTED: Apart = Apart { clusters: 0.5, whole: 0.0 };
+
+/// And these are left to a light buffer: shafts that wide are full of clusters.
+const PASSED_ON: Apart = Apart { clusters: 16.0, whole: 0.4 };
 
 /// Shafts to the lights of a scene.
 pub(super) struct Shafts {
@@ -80,22 +88,37 @@ impl Verdict for Shafts {
     ) {
         let Some(clusters) = &self.clusters else { return };
         let mut walker = self.walker();
-        for (queries, settled) in queries.chunks(BUNDLE).zip(settled.chunks_mut(BUNDLE)) {
-            let leaves_spread = self.leaves_spread;
-            let triangles = &self.triangles;
-            let around = Around { clusters, triangles, queries, leaves_spread };
+        walker.begin();
+        let mut orders = std::mem::take(&mut walker.orders);
+        let [all, apart] = &mut orders;
+        all.places.clear();
+        all.places.extend(0..queries.len() as u32);
+        apart.places.clear();
+        // A bundle by itself gains nothing from being sorted.
+        let leaves = (queries.len() > 4 * PACKET).then_some(SORTED);
+        let mut walk = |places: &[u32], leaves| {
+            let queries = Chosen::new(queries, places);
+            let around = Around { clusters, triangles: &self.triangles, queries, leaves };
             let source = &self.sources[light];
             let walk = Walk { walker: &mut walker, source, around, tally };
-            if !self.arithmetic.run(walk) {
-                continue;
+            let outcome = self.arithmetic.run(walk);
+            if outcome == Outcome::Settled {
+                walker.bundle.tell(places, settled);
             }
-            for (index, settled) in settled.iter_mut().enumerate() {
-                let (packet, bit) = (index / PACKET, 1 << (index % PACKET));
-                if walker.bundle.asked[packet] & bit != 0 {
-                    *settled = Some(walker.bundle.open[packet] & bit == 0);
-                }
+            outcome
+        };
+        for places in all.places.chunks(BUNDLE) {
+            if walk(places, leaves) == Outcome::Left {
+                apart.places.extend(places);
             }
         }
+        if !apart.places.is_empty() {
+            apart.by_place(queries);
+        }
+        for places in apart.places.chunks(BUNDLE) {
+            walk(places, self.leaves_spread.then_some(PASSED_ON));
+        }
+        walker.orders = orders;
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(walker);
     }
 
@@ -119,10 +142,10 @@ struct Walk<'a, 'b> {
 }
 
 impl LanesJob for Walk<'_, '_> {
-    type Answer = bool;
+    type Answer = Outcome;
 
     #[inline(always)]
-    fn run<L: Lanes>(self) -> bool {
+    fn run<L: Lanes>(self) -> Outcome {
         self.walker.walk::<L>(self.source, &self.around, self.tally)
     }
 }
