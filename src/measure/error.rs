@@ -37,7 +37,7 @@ pub enum MeasureError {
     Every {
         /// What was asked for.
         every: u32,
-        /// Scanlines of the smallest picture.
+        /// Scanlines of the picture.
         height: u32,
     },
     /// The count of instructions cannot be read.

@@ -93,16 +93,19 @@ impl Conditions {
         }
     }
 
-    /// Whether pictures can be made like this.
+    /// Whether pictures of these scenes can be made like this.
     ///
     /// # Errors
     /// Says why not.
-    pub fn check(&self) -> Result<(), MeasureError> {
+    pub fn check<'a>(
+        &self,
+        scenes: impl Iterator<Item = &'a Published>,
+    ) -> Result<(), MeasureError> {
         if self.repetitions == 0 {
             return Err(MeasureError::Repetitions);
         }
-        for column in &TABLE {
-            let settings = self.settings(column.scene);
+        for published in scenes {
+            let settings = self.settings(published.scene);
             settings.check()?;
             if !(1..=settings.height).contains(&self.every) {
                 return Err(MeasureError::Every { every: self.every, height: settings.height });
