@@ -71,7 +71,8 @@ fn parse_bytes(text: &str) -> Result<u64, String> {
     Ok((bytes * f64::from(shift).exp2()) as u64)
 }
 
-fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
+/// Voxels along x, y and z.
+pub(super) fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
     let parts: Vec<u32> = text
         .split(',')
         .map(|part| part.trim().parse().ok().filter(|n| (1..=1024).contains(n)))

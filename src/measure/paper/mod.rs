@@ -7,20 +7,26 @@
 //! (with one voxel cache a light). A *gain* is the share of the entire process that is saved: making
 //! and tessellating the scene, building the structure, rendering; all in one thread.
 
+mod callgrind;
 mod lockstep;
 mod meter;
 mod published;
 mod table;
 mod variants;
 
+use std::io;
+use std::path::PathBuf;
+
 use serde::Serialize;
 
+use crate::geometry::lanes::Arithmetic;
 use crate::occlusion::{Backend, BackendError, BuildOptions, Test, build};
-use crate::render::{Order, Progress, RayCounts, Settings, SettingsError};
+use crate::render::{Order, Piecewise, Progress, RayCounts, Settings, SettingsError};
 use crate::scene::{SceneError, builtin};
 use crate::shadow::{LastVoxel, Method, MethodError, PerPath, Plan, ShadowTally, prepare};
-use lockstep::{Contestant, Taken, render_in_turns};
+use lockstep::{Contestant, Taken, render_all};
 
+pub use callgrind::{Callgrind, LOG, callgrind};
 pub use meter::{Meter, Unit, thread_time};
 pub use published::{Published, Storage, TABLE, storage};
 pub use table::storage_table;
@@ -45,7 +51,7 @@ pub struct Conditions {
     pub size: Option<(u32, u32)>,
     /// Samples along each side of a pixel, instead of the paper's.
     pub samples: Option<u32>,
-    /// Only the middle one of every so many scanlines is rendered.
+    /// Only one of every so many scanlines is rendered: see [`Piecewise::picks`].
     pub every: u32,
     /// Reflections and refractions that a ray may go through.
     pub depth: u8,
@@ -55,6 +61,10 @@ pub struct Conditions {
     pub repetitions: usize,
     /// What the methods have in common.
     pub plan: Plan,
+    /// How the engines are built.
+    pub build: BuildOptions,
+    /// The folder in which Callgrind writes, if it shall count.
+    pub callgrind: Option<PathBuf>,
 }
 
 impl Conditions {
@@ -70,6 +80,16 @@ impl Conditions {
             order: Order::Scanline,
             rows_per_unit: height,
             ..Settings::default()
+        }
+    }
+
+    /// Starts counting what this thread does.
+    fn meter(&self) -> Result<Meter, PaperError> {
+        match &self.callgrind {
+            None => Ok(Meter::start()),
+            Some(folder) => {
+                Callgrind::start(folder).map(Meter::Callgrind).ok_or(PaperError::NoCallgrind)
+            }
         }
     }
 
@@ -94,9 +114,11 @@ impl Conditions {
     /// Pixels that will be rendered of a scene, over all repetitions of so many methods.
     fn pixels_by(&self, scene: &str, methods: usize) -> u64 {
         let Settings { width, height, .. } = self.settings(scene);
-        // Everyone renders everything twice: see `lockstep`.
-        let pictures = 2 * self.backends.len() * methods * self.repetitions;
-        u64::from(width) * u64::from(height / self.every) * pictures as u64
+        // See `lockstep`.
+        let times = if self.callgrind.is_some() { 1 } else { 2 * self.repetitions };
+        let pictures = times * self.backends.len() * methods;
+        let rows = (0..height).filter(|&row| Piecewise::picks(row, self.every)).count();
+        u64::from(width) * (rows * pictures) as u64
     }
 
     /// Pixels that will be rendered for the table of a scene.
@@ -127,6 +149,12 @@ pub enum PaperError {
     /// The picture cannot be made.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+    /// The count of instructions cannot be read.
+    #[error("cannot read the count of instructions: {0}")]
+    Meter(#[from] io::Error),
+    /// Callgrind shall count and does not run.
+    #[error("Callgrind counts only in programs that Valgrind runs on x86-64")]
+    NoCallgrind,
     /// Nothing would be measured.
     #[error("repetitions 0: give at least 1")]
     Repetitions,
@@ -225,6 +253,8 @@ pub struct SceneReport {
     pub every: u32,
     /// What work is counted in.
     pub unit: Unit,
+    /// The instruction set of our kernels.
+    pub arithmetic: &'static str,
     /// What making and tessellating the scene took.
     pub load: u64,
     /// A column a backend.
@@ -241,15 +271,15 @@ pub fn reproduce(
     progress: &Progress,
 ) -> Result<SceneReport, PaperError> {
     let settings = conditions.settings(published.scene);
-    let meter = Meter::start();
-    let before = meter.read();
+    let meter = conditions.meter()?;
+    let before = meter.read()?;
     let scene = builtin::draft_at(published.scene, conditions.tessellation)?.finish()?;
-    let load = meter.read() - before;
+    let load = meter.read()? - before;
     let mut columns = Vec::new();
     for &backend in &conditions.backends {
         let test = conditions.test.unwrap_or_else(|| backend.default_test());
-        let before = meter.read();
-        let engine = build(backend, test, &scene.triangles, &BuildOptions::default())?;
+        let before = meter.read()?;
+        let engine = build(backend, test, &scene.triangles, &conditions.build)?;
         let contestants = METHODS
             .iter()
             .map(|&method| {
@@ -257,10 +287,10 @@ pub fn reproduce(
                 Ok(Contestant { method, settings })
             })
             .collect::<Result<Vec<_>, MethodError>>()?;
-        let build = meter.read() - before;
+        let build = meter.read()? - before;
         let Conditions { every, repetitions, .. } = *conditions;
         let taken =
-            render_in_turns(&scene, &*engine, &contestants, every, repetitions, &meter, progress)?;
+            render_all(&scene, &*engine, &contestants, every, repetitions, &meter, progress)?;
         columns.push(column((backend, test), (load, build), every, &taken));
     }
     Ok(SceneReport {
@@ -272,6 +302,7 @@ pub fn reproduce(
         samples_per_pixel: settings.samples * settings.samples,
         every: conditions.every,
         unit: meter.unit(),
+        arithmetic: Arithmetic::of_this_cpu().name(),
         load,
         columns,
     })

@@ -20,10 +20,11 @@ impl fmt::Display for SceneReport {
         };
         writeln!(
             f,
-            "{} ({}): {width}x{height}, {samples_per_pixel} {samples} a pixel{part}, gains in {}",
+            "{} ({}): {width}x{height}, {samples_per_pixel} {samples} a pixel{part}, gains in {} ({})",
             published.title,
             published.scene,
-            self.unit.name()
+            self.unit.name(),
+            self.arithmetic
         )?;
         let mut row = |name: &str, paper: String, ours: &dyn Fn(&Column) -> String| {
             write!(f, "  {name:NAME$}{paper:>VALUE$}")?;
