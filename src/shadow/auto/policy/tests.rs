@@ -5,12 +5,14 @@ use super::*;
 /// Queries of a batch.
 const BATCH: f64 = 256.0;
 
+/// Nanoseconds a query: light, place, batch, candidate.
+type Cost = fn(usize, u32, usize, usize) -> f64;
+
 const LEADS: Reason = Reason::Leads;
 
 /// What candidates really cost.
 struct World {
-    /// Nanoseconds a query: light, place, batch, candidate.
-    cost: fn(usize, u32, usize, usize) -> f64,
+    cost: Cost,
     /// Nanoseconds to prepare each candidate.
     scene: Vec<f64>,
     /// Nanoseconds that each candidate has to build for a light, spread over the batches that it answers first.
@@ -23,7 +25,7 @@ struct World {
 const BUILT_IN: f64 = 10.0;
 
 impl World {
-    fn flat(cost: fn(usize, u32, usize, usize) -> f64, candidates: usize) -> Self {
+    fn flat(cost: Cost, candidates: usize) -> Self {
         let nothing = vec![0.0; candidates];
         Self { cost, scene: nothing.clone(), light: nothing, lights: 1, places: 1 }
     }
@@ -87,7 +89,7 @@ impl World {
 
 #[test]
 fn regret_is_a_root_of_the_batches_where_nothing_is_built() {
-    let worlds: [fn(usize, u32, usize, usize) -> f64; 4] = [
+    let worlds: [Cost; 4] = [
         |_, _, _, c| [40.0, 44.0, 400.0][c],
         |_, _, _, c| [400.0, 40.0, 44.0][c],
         |_, _, _, c| [50.0, 5000.0, 49.0][c],
