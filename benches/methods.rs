@@ -71,9 +71,9 @@ impl Row<'_> {
 }
 
 fn metered<T>(meter: &Meter, work: impl FnOnce() -> T) -> (T, u64) {
-    let before = meter.read();
+    let before = meter.read().expect("the count goes on");
     let done = work();
-    (done, meter.read() - before)
+    (done, meter.read().expect("the count goes on") - before)
 }
 
 fn measure(scene: &Scene, settings: &Settings) {

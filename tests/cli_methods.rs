@@ -76,28 +76,44 @@ fn statistics_say_what_each_verdict_took_and_settled() {
 }
 
 #[test]
-fn auto_is_shaft_and_light_buffer_before_the_exact_test_and_trace_elsewhere() {
+fn auto_says_who_answered_and_why_and_gives_the_same_picture() {
     let folder = folder();
     let render = |arguments: &str| {
         let line =
-            format!("render chair-room -o out.png --size 40x30 --stats out.json {arguments}");
+            format!("render chair-room -o out.png --size 80x60 --stats out.json {arguments}");
         let output = run(folder.path(), &line);
         assert!(output.status.success(), "{}", said(&output));
         let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
         let stats: Value = serde_json::from_slice(&read("out.json")).unwrap();
-        (stats["shadows"].as_str().unwrap().to_owned(), read("out.png"))
+        (stats, read("out.png"), said(&output))
     };
-    let (_, traced) = render("--shadows trace");
-    for (arguments, chosen) in [
-        ("", "shaft+light-buffer"),
-        ("--shadows auto", "shaft+light-buffer"),
-        ("--order scanline", "shaft+light-buffer"),
-        ("--test pluecker", "trace"),
-        ("--self-shadow exclude", "trace"),
+    let (stats, traced, _) = render("--shadows trace");
+    assert_eq!(stats["choices"].as_array().unwrap().len(), 0);
+    for (arguments, shafts) in [
+        ("", true),
+        ("--shadows auto", true),
+        ("--order scanline", true),
+        ("--test pluecker", false),
+        ("--self-shadow exclude", false),
     ] {
-        let (name, picture) = render(arguments);
-        assert_eq!(name, chosen, "{arguments}");
+        let (stats, picture, said) = render(arguments);
+        assert_eq!(stats["shadows"], "auto", "{arguments}");
         assert!(picture == traced || arguments.contains("exclude"), "{arguments}");
+        let lights = stats["choices"].as_array().unwrap();
+        assert_eq!(lights.len(), 4, "{arguments}");
+        let mut queries = 0;
+        for light in lights {
+            let candidates = light["candidates"].as_array().unwrap();
+            let names = candidates.iter().map(|share| share["method"].as_str().unwrap());
+            assert_eq!(names.clone().any(|name| name == "shaft"), shafts, "{arguments}");
+            assert!(names.clone().any(|name| name == "trace"), "{arguments}");
+            for share in candidates {
+                assert!(share["reason"].as_str().is_some_and(|reason| reason.contains(' ')));
+                queries += share["queries"].as_u64().unwrap();
+            }
+        }
+        assert_eq!(queries, stats["counts"]["shadows"]["queries"].as_u64().unwrap());
+        assert!(said.contains("light 0:") && said.contains("ns a query"), "{said}");
     }
 }
 

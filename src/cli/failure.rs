@@ -23,6 +23,8 @@ pub(super) enum Failure {
     Input(String),
     /// A comparison failed: exit status 1.
     Comparison(String),
+    /// Another process of ours failed, has said why, and ended with this status.
+    Reported(u8),
     /// Whoever read standard output has seen enough: nothing to say.
     NoReader,
 }
@@ -59,6 +61,7 @@ impl Failure {
                 say!("umbra: {message}");
                 ExitCode::from(1)
             }
+            Self::Reported(status) => ExitCode::from(status),
             Self::NoReader => ExitCode::SUCCESS,
         }
     }
@@ -108,8 +111,7 @@ input!(
     crate::occlusion::BackendError,
     crate::shadow::MethodError,
     crate::render::SettingsError,
+    crate::measure::MeasureError,
     crate::measure::compare::CompareError,
-    crate::measure::paper::PaperError,
     crate::measure::recording::TooManyQueries,
-    crate::measure::tradeoff::TradeoffError,
 );

@@ -13,7 +13,8 @@ use super::progress::with_word;
 use crate::occlusion::{Backend, BackendError, BuildOptions, GridOptions, Occlusion, Test, build};
 use crate::scene::Scene;
 use crate::shadow::{
-    Combination, CombinationError, Method, Plan, Retest, SelfShadow, VerdictKind, VerdictSet,
+    Auto, Combination, CombinationError, Method, MethodError, Plan, Prepared, Retest, SelfShadow,
+    prepare,
 };
 use crate::whole_file::{folder_of, write_whole};
 
@@ -70,7 +71,8 @@ fn parse_bytes(text: &str) -> Result<u64, String> {
     Ok((bytes * f64::from(shift).exp2()) as u64)
 }
 
-fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
+/// Voxels along x, y and z.
+pub(super) fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
     let parts: Vec<u32> = text
         .split(',')
         .map(|part| part.trim().parse().ok().filter(|n| (1..=1024).contains(n)))
@@ -202,7 +204,7 @@ pub(super) struct ShadowOptions {
 /// Names every method.
 fn shadows_help() -> String {
     format!(
-        "What stands before the engine: auto, which is shaft+light-buffer where the test is exact and trace elsewhere; or {}",
+        "What stands before the engine: auto, which asks what turns out to be cheapest, light by light; or {}",
         Combination::names()
     )
 }
@@ -233,35 +235,34 @@ impl FromStr for Choice {
 }
 
 impl ShadowOptions {
-    /// What was asked for, or what suits the triangle test.
-    ///
-    /// A verdict's answers are those of exact arithmetic, so verdicts are chosen before that test only; and they
-    /// do not go with leaving out the triangle that a ray starts on. Shafts have nothing to prepare for a light, and
-    /// leave to the light buffer what does not stay together, bundle by bundle (docs/fast.md has the figures).
-    pub fn combination(&self, test: Test) -> Combination {
-        match self.shadows {
-            Choice::Given(combination) => combination,
-            Choice::Auto if test == Test::Exact && self.self_shadow == SelfShadow::Offset => {
-                let verdicts =
-                    VerdictSet::NONE.with(VerdictKind::Shaft).with(VerdictKind::LightBuffer);
-                Combination { verdicts, ..Combination::default() }
-            }
-            Choice::Auto => Combination::default(),
-        }
+    /// What was asked for, as it is written.
+    pub fn name(&self) -> String {
+        self.shadows.to_string()
     }
 
-    /// The method with its options, before an engine with this test.
-    pub fn plan(&self, test: Test) -> Plan {
-        let combination = self.combination(test);
-        Plan {
-            verdicts: combination.verdicts,
-            budget: None,
-            method: combination.method,
+    /// Makes it ready for a scene and a backend with this test, within a memory limit.
+    pub fn prepare<'a>(
+        &self,
+        scene: &'a Scene,
+        backend: &'a dyn Occlusion,
+        engine: &EngineOptions,
+    ) -> Result<Box<dyn Prepared + 'a>, MethodError> {
+        let combination = match self.shadows {
+            Choice::Given(combination) => combination,
+            Choice::Auto => Combination::default(),
+        };
+        let plan = Plan {
+            budget: engine.memory,
             self_shadow: self.self_shadow,
             retest: self.retest,
             reset_scanlines: self.reset_scanlines,
             tree_depth: self.tree_depth,
             tolerance: self.tolerance,
+            ..combination.into()
+        };
+        match self.shadows {
+            Choice::Given(_) => prepare(plan, scene, backend),
+            Choice::Auto => Ok(Box::new(Auto::new(plan, engine.test(), scene, backend)?)),
         }
     }
 }

@@ -1,18 +1,20 @@
 //! `umbra paper`: Table 2 of the paper beside ours.
 
+use std::io;
 use std::path::PathBuf;
+use std::process::Command;
 
 use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{check_outputs, parse_size, print, write_json};
+use super::options::{check_outputs, parse_resolution, parse_size, print, write_json};
 use super::progress::with_bar;
 use crate::measure::paper::{
-    Conditions, NODE_BYTES, Published, SceneReport, Storage, TABLE, VariantReport,
+    Conditions, LOG, NODE_BYTES, Published, SceneReport, Storage, TABLE, VariantReport, callgrind,
     compare_variants, reproduce, storage, storage_table,
 };
-use crate::occlusion::{Backend, Test};
+use crate::occlusion::{Backend, BuildOptions, GridOptions, Test};
 use crate::render::Progress;
 use crate::scene::builtin::NAMES;
 use crate::shadow::{Method, Plan, Retest, VerdictSet};
@@ -21,8 +23,12 @@ const DETAILS: &str = "\
 Everything runs in one thread; the pictures are the paper's unless a size is given. All methods render
 in turns, a few milliseconds each; of each piece of the picture the least of all repetitions counts. The
 ± is half the difference between the even and the odd repetitions. The whole table takes hours;
---every 9 makes it of a ninth of the scanlines, which changes rates and gains little; --quick takes
-seconds, but its rates and gains are those of other pictures.
+--every 9 makes it of a ninth of the scanlines, in pairs of neighbours, which changes rates and gains
+little; --quick takes seconds, but its rates and gains are those of other pictures.
+
+--instructions counts instructions instead of time, which gives the same figures every time, whatever
+else the machine does. It runs umbra again under Valgrind, which must be installed: that takes some ten
+times as long as rendering once, and has no AVX-512, so the kernels for AVX2 are measured.
 
 --variants compares what else the paper mentions: the tolerance check, Woo's variant, forgetting at
 scanlines, serpentine scanlines, tiles, mailboxes, leaving out the spawner. 'a ray' is the work of all
@@ -32,7 +38,8 @@ rendering by ray, 'saved' its share saved over trace, 'object' and 'voxel' the p
 Examples:
   umbra paper --quick
   umbra paper --every 9 --scene drum --backends grid,embree --stats drum.json
-  umbra paper --every 9 --scene chair-room --backends grid --variants";
+  umbra paper --every 9 --scene chair-room --backends grid --variants
+  umbra paper --every 9 --scene chair-room --backends cwbvh --instructions";
 
 /// Rebuilds the four scenes of Pearce & Jevans 1991 and prints their Table 2 beside ours
 #[derive(Args)]
@@ -53,17 +60,22 @@ pub(super) struct Paper {
     /// Samples along each side of a pixel, instead of the paper's: 3, and 1 for the drum
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
-    /// Renders one scanline of every so many only
+    /// Renders one scanline of every so many only, in pairs of neighbours
     #[arg(long, value_name = "N", default_value_t = 1)]
     every: u32,
     /// Reflections and refractions that a ray may go through
     #[arg(long, value_name = "N", default_value_t = 5)]
     depth: u8,
-    /// Factor on the paper's triangles
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    /// Factor on the paper's triangles, from 0.01 to 100
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        default_value_t = 1.0,
+        default_value_if("quick", "true", "0.05")
+    )]
     tessellation: f64,
     /// How often everything is measured; of each piece of a picture the least counts
-    #[arg(long, value_name = "N", default_value_t = 3)]
+    #[arg(long, value_name = "N", default_value_t = 3, default_value_if("quick", "true", "1"))]
     repetitions: usize,
     /// Whether a traversal tests again what was tested from memory
     #[arg(long, value_enum, default_value_t)]
@@ -74,6 +86,18 @@ pub(super) struct Paper {
     /// Compares what else the paper mentions, instead of printing its table
     #[arg(long, conflicts_with = "retest")]
     variants: bool,
+    /// Counts instructions instead of time, by running under Valgrind: the same figures every time
+    #[arg(long, conflicts_with = "repetitions")]
+    instructions: bool,
+    /// Where Callgrind writes: given by the umbra that runs this one under Valgrind
+    #[arg(long, hide = true, value_name = "FOLDER", requires = "instructions")]
+    callgrind_folder: Option<PathBuf>,
+    /// Voxels of the grid along x, y and z, instead of a choice by the number of triangles
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_resolution)]
+    grid: Option<[u32; 3]>,
+    /// A plain uniform grid, like the paper's: crowded voxels are not divided
+    #[arg(long)]
+    uniform: bool,
     /// Small pictures of scenes with few triangles, measured once: to see that it works
     #[arg(long)]
     quick: bool,
@@ -105,12 +129,19 @@ impl Paper {
             tessellation: self.tessellation,
             repetitions: self.repetitions,
             plan: Plan { retest: self.retest, verdicts: self.verdicts, ..Method::Trace.into() },
+            build: BuildOptions {
+                grid: GridOptions {
+                    resolution: self.grid,
+                    nested: !self.uniform,
+                    ..GridOptions::default()
+                },
+                ..BuildOptions::default()
+            },
+            callgrind: self.callgrind_folder.clone(),
         };
         if self.quick {
             conditions.size = conditions.size.or(Some((80, 60)));
             conditions.samples = conditions.samples.or(Some(1));
-            conditions.tessellation *= 0.05;
-            conditions.repetitions = 1;
         }
         conditions
     }
@@ -122,9 +153,12 @@ impl Paper {
 
     pub fn run(self) -> Result<(), Failure> {
         let conditions = self.conditions();
-        conditions.check()?;
+        conditions.check(self.scenes())?;
         let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[])?;
+        if self.instructions && self.callgrind_folder.is_none() {
+            return run_under_callgrind();
+        }
         // One thread, which is the one whose work is counted.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.map_err(|e| Failure::Input(format!("cannot start a thread: {e}")))?;
@@ -168,6 +202,36 @@ impl Paper {
             write_json(path, &reports)?;
         }
         agreed(reports.iter().map(|report| (report.agree, report.backend)))
+    }
+}
+
+/// Runs this very command again, under Valgrind.
+fn run_under_callgrind() -> Result<(), Failure> {
+    let unable = |reason: String| Failure::Input(format!("cannot count instructions: {reason}"));
+    let folder = tempfile::tempdir().map_err(|e| unable(format!("no temporary folder: {e}")))?;
+    let umbra = std::env::current_exe().map_err(|e| unable(format!("umbra is not found: {e}")))?;
+    let [valgrind, options @ ..] = callgrind(folder.path());
+    let status = Command::new(valgrind)
+        .args(options)
+        .arg(umbra)
+        .args(std::env::args_os().skip(1))
+        .arg("--callgrind-folder")
+        .arg(folder.path())
+        .status();
+    match status.map(|status| status.code()) {
+        Ok(Some(0)) => Ok(()),
+        Ok(Some(code @ (1 | 2))) => Err(Failure::Reported(code as u8)),
+        Ok(_) => {
+            let log = std::fs::read_to_string(folder.path().join(LOG)).unwrap_or_default();
+            let last = log.lines().last().unwrap_or("it says nothing");
+            Err(unable(format!("Valgrind ended early: {last}")))
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(unable(
+            "Valgrind is not installed; install it (Debian, Ubuntu: apt install valgrind), or leave \
+             --instructions out: time is measured then"
+                .to_owned(),
+        )),
+        Err(error) => Err(unable(format!("Valgrind does not start: {error}"))),
     }
 }
 

@@ -15,7 +15,7 @@ use crate::render::{
     Film, Order, Picture, Progress, Rendered, Settings, Shown, Statistics, render, write_picture,
 };
 use crate::scene::{Dropped, builtin};
-use crate::shadow::{Plan, Settled, VerdictReport, prepare};
+use crate::shadow::{LightChoices, Settled, VerdictReport};
 
 const DETAILS: &str = "\
 A scene without camera or lights gets sensible ones, and the command says so.
@@ -69,6 +69,9 @@ pub(super) struct Render {
     stats: Option<PathBuf>,
 }
 
+/// Lights of which it is printed who answered; `--stats` has all.
+const SHOWN_LIGHTS: usize = 4;
+
 /// The paper's size of a picture of its scenes; that of most of them for other scenes.
 fn default_size(scene: &str) -> (u32, u32) {
     let Settings { width, height, .. } = Settings::default();
@@ -88,6 +91,8 @@ struct Report<'a> {
     test: &'a str,
     shadows: String,
     verdicts: Vec<Verdict>,
+    /// Who answered the queries to each light, if there was a choice.
+    choices: Vec<LightChoices>,
     width: u32,
     height: u32,
     samples_per_pixel: u32,
@@ -149,8 +154,7 @@ impl Render {
         }
         let (backend, build_seconds) = self.engine.build(&scene)?;
         let start = Instant::now();
-        let plan = Plan { budget: self.engine.memory, ..self.shadows.plan(self.engine.test()) };
-        let shadows = prepare(plan, &scene, &*backend)?;
+        let shadows = self.shadows.prepare(&scene, &*backend, &self.engine)?;
         let progress = Progress::default();
         let pixels = u64::from(settings.width) * u64::from(settings.height);
         let rendered = with_bar(pixels, &progress, || {
@@ -189,7 +193,7 @@ impl Render {
             scene.lights.len(),
             self.engine.backend,
             self.engine.test(),
-            self.shadows.combination(self.engine.test()),
+            self.shadows.name(),
             rays.total(),
             rays.shadow,
             statistics.shadows.blocked,
@@ -198,6 +202,13 @@ impl Render {
             load_seconds,
             build_seconds,
         );
+        let choices = shadows.choices();
+        for light in choices.iter().take(SHOWN_LIGHTS) {
+            say!("umbra: {light}");
+        }
+        if choices.len() > SHOWN_LIGHTS {
+            say!("umbra: and {} more lights, see --stats FILE", choices.len() - SHOWN_LIGHTS);
+        }
         let Some(stats) = &self.stats else { return Ok(()) };
         let report = Report {
             scene: &scene.name,
@@ -209,8 +220,9 @@ impl Render {
             notes: &scene.notes,
             backend: self.engine.backend.name(),
             test: self.engine.test().name(),
-            shadows: self.shadows.combination(self.engine.test()).to_string(),
+            shadows: self.shadows.name(),
             verdicts,
+            choices,
             width: settings.width,
             height: settings.height,
             samples_per_pixel: settings.samples * settings.samples,

@@ -43,7 +43,7 @@ pub struct Pieces {
 }
 
 impl<'a> Piecewise<'a> {
-    /// Nothing is rendered yet. Of every so many scanlines, or tiles, the middle one will be.
+    /// Nothing is rendered yet. One of every so many scanlines, or tiles, will be.
     ///
     /// # Errors
     /// If the settings make no picture.
@@ -62,7 +62,7 @@ impl<'a> Piecewise<'a> {
         let stretch = (SAMPLES_A_PIECE / (samples * samples)).max(1) as usize;
         let (mut pixels, mut pieces) = (Vec::new(), Vec::new());
         for (row, unit) in order.units([width, height], 1, samples).into_iter().enumerate() {
-            if row as u32 % every != every / 2 {
+            if !Self::picks(row as u32, every) {
                 continue;
             }
             let length = if order.batches() { unit.len() } else { stretch };
@@ -85,6 +85,14 @@ impl<'a> Piecewise<'a> {
             colours,
             statistics,
         })
+    }
+
+    /// Whether a scanline, or tile, is among one of every so many. Of twice so many the middle two are: two
+    /// neighbours, an even and an odd one, so serpentine scanlines turn as they do in the whole picture.
+    #[must_use]
+    pub fn picks(row: u32, every: u32) -> bool {
+        let place = u64::from(row) % (2 * u64::from(every));
+        place + 1 == u64::from(every) || place == u64::from(every)
     }
 
     /// Number of pieces in all.
@@ -118,5 +126,29 @@ impl<'a> Piecewise<'a> {
         let mut colours: Vec<_> = self.pixels.into_iter().zip(self.colours).collect();
         colours.sort_by_key(|&((x, y), _)| (y, x));
         Pieces { colours, statistics: self.statistics }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_row_of_every_so_many_is_picked_and_as_many_even_ones_as_odd_ones() {
+        for every in 1..20 {
+            let height = 2 * every * 30;
+            let rows: Vec<u32> = (0..height).filter(|&row| Piecewise::picks(row, every)).collect();
+            assert_eq!(rows.len() as u32, height / every, "one in {every}");
+            assert!(rows.chunks(2).all(|pair| pair[0] + 1 == pair[1]), "one in {every}: {rows:?}");
+        }
+    }
+
+    #[test]
+    fn some_row_is_picked_from_every_picture() {
+        for height in 1..50 {
+            for every in 1..=height {
+                assert!((0..height).any(|row| Piecewise::picks(row, every)), "{every} of {height}");
+            }
+        }
     }
 }

@@ -5,7 +5,6 @@ use std::fmt;
 use serde::Serialize;
 
 use super::Verdict;
-use super::light_buffer::LightBuffer;
 use super::shadow_polygons::ShadowPolygons;
 use super::shaft::Shafts;
 use super::stock::Stock;
@@ -55,7 +54,7 @@ impl VerdictKind {
         let Stock { scene, budget, .. } = stock;
         match self {
             Self::Shaft => Box::new(Shafts::new(stock)),
-            Self::LightBuffer => Box::new(LightBuffer::new(stock)),
+            Self::LightBuffer => Box::new(stock.light_buffer()),
             Self::VoxelOcclusion => Box::new(VoxelOcclusion::new(scene, budget)),
             Self::ShadowPolygons => Box::new(ShadowPolygons::new(scene, budget)),
         }

@@ -14,7 +14,10 @@
 //! | `cache-tree` | [`LastVoxel`] | [`PerPath`] |
 //! | `cache-tree-tolerance` | [`Nearby`]`<LastVoxel>` | [`PerPath`] |
 //! | `woo` | [`LastCell`] | [`PerLight`] |
+//!
+//! [`Auto`] stands before several of them, and asks now this one, now that, whichever is cheapest.
 
+mod auto;
 mod budget;
 mod cache_tree;
 mod caster;
@@ -41,6 +44,7 @@ mod voxel_occlusion;
 mod voxels;
 mod woo;
 
+pub use auto::{Auto, CandidateShare, LightChoices};
 pub use budget::Budget;
 pub use cache_tree::PerPath;
 pub use caster::{Cached, Caster};
@@ -73,6 +77,11 @@ pub trait Prepared: Send + Sync {
 
     /// What each verdict took to prepare, so far.
     fn verdicts(&self) -> Vec<VerdictReport> {
+        Vec::new()
+    }
+
+    /// Who answered, and why; empty if there was no choice.
+    fn choices(&self) -> Vec<LightChoices> {
         Vec::new()
     }
 

@@ -51,6 +51,27 @@ impl Plan {
     pub fn combination(&self) -> Combination {
         Combination { verdicts: self.verdicts, method: self.method }
     }
+
+    /// Whether its options make sense, alone and together.
+    pub(super) fn check(&self) -> Result<(), MethodError> {
+        if !(0.0..=0.5).contains(&self.tolerance) {
+            return Err(MethodError::Tolerance(self.tolerance));
+        }
+        if self.tree_depth > Path::MAX_LEVEL {
+            return Err(MethodError::TreeDepth(self.tree_depth));
+        }
+        if self.self_shadow == SelfShadow::Exclude && !self.verdicts.is_empty() {
+            return Err(MethodError::LeavesOut(self.combination()));
+        }
+        Ok(())
+    }
+
+    /// What its verdicts are prepared from; they share what memory the backend leaves of the budget.
+    pub(super) fn stock<'a>(&self, scene: &'a Scene, backend: &dyn Occlusion) -> Stock<'a> {
+        let limit = self.budget.unwrap_or_else(default_budget);
+        let budget = Budget::new(limit.saturating_sub(backend.memory() as u64));
+        Stock::new(scene, Arc::new(budget), self.verdicts)
+    }
 }
 
 impl<C: Into<Combination>> From<C> for Plan {
@@ -101,21 +122,26 @@ pub fn prepare<'a>(
     backend: &'a dyn Occlusion,
 ) -> Result<Box<dyn Prepared + 'a>, MethodError> {
     let plan = plan.into();
-    if !(0.0..=0.5).contains(&plan.tolerance) {
-        return Err(MethodError::Tolerance(plan.tolerance));
+    plan.check()?;
+    Ok(prepare_from(&plan, &plan.stock(scene, backend), backend))
+}
+
+/// Makes a plan that has been checked ready, from what others may have taken from before.
+pub(super) fn prepare_from<'a>(
+    plan: &Plan,
+    stock: &Stock<'_>,
+    backend: &'a dyn Occlusion,
+) -> Box<dyn Prepared + 'a> {
+    let mut verdicts = Verdicts::default();
+    for kind in plan.verdicts.iter() {
+        verdicts.push(kind, || kind.prepare(stock));
     }
-    if plan.tree_depth > Path::MAX_LEVEL {
-        return Err(MethodError::TreeDepth(plan.tree_depth));
-    }
-    if plan.self_shadow == SelfShadow::Exclude && !plan.verdicts.is_empty() {
-        return Err(MethodError::LeavesOut(plan.combination()));
-    }
-    let bounds = scene.bounds();
+    let bounds = stock.scene.bounds();
     let diagonal = bounds.min.distance(bounds.max);
     let tolerance = Tolerance::new(plan.tolerance * diagonal, plan.tolerance);
-    let verdicts = prepare_verdicts(&plan, scene, backend);
-    let table = Table { verdicts, backend, opaque: scene.triangles.opaque_count(), plan };
-    Ok(match plan.method {
+    let opaque = stock.scene.triangles.opaque_count();
+    let table = Table { verdicts, backend, opaque, plan: *plan };
+    match plan.method {
         Method::Trace if plan.self_shadow == SelfShadow::Offset => {
             Box::new(Trace::behind(table.verdicts, backend))
         }
@@ -127,21 +153,7 @@ pub fn prepare<'a>(
             table.memory(PerPath::<Nearby<LastVoxel>>::new(plan.tree_depth), (tolerance, ()))
         }
         Method::Woo => table.memory(PerLight::<LastCell>::default(), woo::Fronts::default()),
-    })
-}
-
-/// The verdicts share what memory the backend leaves of the budget.
-fn prepare_verdicts<'a>(plan: &Plan, scene: &Scene, backend: &'a dyn Occlusion) -> Verdicts<'a> {
-    let mut verdicts = Verdicts::default();
-    if !plan.verdicts.is_empty() {
-        let limit = plan.budget.unwrap_or_else(default_budget);
-        let budget = Budget::new(limit.saturating_sub(backend.memory() as u64));
-        let stock = Stock::new(scene, Arc::new(budget), plan.verdicts);
-        for kind in plan.verdicts.iter() {
-            verdicts.push(kind, || kind.prepare(&stock));
-        }
     }
-    verdicts
 }
 
 /// What all memories are put behind and before.

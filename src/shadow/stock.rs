@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::light_buffer::LightBuffer;
 use super::{Budget, VerdictSet};
 use crate::occlusion::Clusters;
 use crate::scene::Scene;
@@ -15,23 +16,40 @@ pub(super) struct Stock<'a> {
     pub budget: Arc<Budget>,
     /// All verdicts that are prepared, in their order.
     pub verdicts: VerdictSet,
+    shared: Arc<Shared>,
+}
+
+/// What is made once, by whoever asks first.
+#[derive(Default)]
+struct Shared {
     clusters: OnceLock<Option<Arc<Clusters>>>,
+    light_buffer: OnceLock<Arc<LightBuffer>>,
 }
 
 impl<'a> Stock<'a> {
     pub fn new(scene: &'a Scene, budget: Arc<Budget>, verdicts: VerdictSet) -> Self {
-        Self { scene, budget, verdicts, clusters: OnceLock::new() }
+        Self { scene, budget, verdicts, shared: Arc::default() }
+    }
+
+    /// The same stock for other verdicts.
+    pub fn for_verdicts(&self, verdicts: VerdictSet) -> Self {
+        Self { budget: self.budget.clone(), verdicts, shared: self.shared.clone(), ..*self }
     }
 
     /// The triangles' clusters, if the memory suffices; and their bytes, for whoever asks first.
     pub fn clusters(&self) -> (Option<Arc<Clusters>>, usize) {
         let mut bytes = 0;
-        let clusters = self.clusters.get_or_init(|| {
+        let clusters = self.shared.clusters.get_or_init(|| {
             let estimate = CLUSTER_BYTES * self.scene.triangles.len();
             let clusters = self.budget.take(estimate).then(|| Clusters::new(&self.scene.triangles));
             bytes = clusters.as_ref().map_or(0, Clusters::memory);
             clusters.map(Arc::new)
         });
         (clusters.clone(), bytes)
+    }
+
+    /// The one light buffer of all sets of verdicts that have it.
+    pub fn light_buffer(&self) -> Arc<LightBuffer> {
+        self.shared.light_buffer.get_or_init(|| Arc::new(LightBuffer::new(self))).clone()
     }
 }

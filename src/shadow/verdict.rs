@@ -1,5 +1,6 @@
 //! What settles a query before anything is traversed.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -34,6 +35,30 @@ pub trait Verdict: Send + Sync {
     /// What the user should know: that it had to be made coarser, or steps aside.
     fn notes(&self) -> Vec<String> {
         Vec::new()
+    }
+}
+
+impl<V: Verdict> Verdict for Arc<V> {
+    fn settle_many(
+        &self,
+        light: usize,
+        queries: &[ShadowQuery],
+        settled: &mut [Option<bool>],
+        tally: &mut Tally,
+    ) {
+        V::settle_many(self, light, queries, settled, tally);
+    }
+
+    fn memory(&self) -> usize {
+        V::memory(self)
+    }
+
+    fn lazy_seconds(&self) -> f64 {
+        V::lazy_seconds(self)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        V::notes(self)
     }
 }
 

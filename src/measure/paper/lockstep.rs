@@ -10,14 +10,17 @@
 //! that alone, by up to 5 %. So everyone renders each piece twice, by two workers in the same state, and
 //! the second run counts: by then all have what they need. What is left out so is waiting for memory, as
 //! it was by *pixie*, which counted the cycles of a processor that never waits.
+//!
+//! None of this is needed where Callgrind counts: there everyone renders once, one after the other.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glam::Vec3;
 
 use super::Meter;
+use crate::measure::MeasureError;
 use crate::occlusion::Occlusion;
-use crate::render::{Piecewise, Place, Progress, Settings, SettingsError, Statistics};
+use crate::render::{Pieces, Piecewise, Place, Progress, Settings, Statistics};
 use crate::scene::Scene;
 use crate::shadow::Prepared;
 
@@ -32,7 +35,7 @@ pub struct Contestant<'a> {
 /// What one contestant took to render the picture.
 #[derive(Clone, Debug, Default)]
 pub struct Taken {
-    /// The sum over pieces of the least measurement.
+    /// The sum over pieces of the least measurement; under Callgrind, the only one.
     pub least: u64,
     /// The same of the even and of the odd repetitions alone.
     pub halves: [u64; 2],
@@ -44,12 +47,12 @@ pub struct Taken {
     pub colours: Vec<(Place, Vec3)>,
 }
 
-/// Has every contestant render the picture twice a repetition, or the middle one of every so many of
-/// its scanlines or tiles, in one thread.
+/// Has every contestant render the picture, or one of every so many of its scanlines or tiles, in one
+/// thread: once if Callgrind counts, else twice a repetition.
 ///
 /// # Errors
-/// If the settings make no picture.
-pub fn render_in_turns(
+/// If the settings make no picture, or the meter fails.
+pub fn render_all(
     scene: &Scene,
     backend: &dyn Occlusion,
     contestants: &[Contestant<'_>],
@@ -57,18 +60,51 @@ pub fn render_in_turns(
     repetitions: usize,
     meter: &Meter,
     progress: &Progress,
-) -> Result<Vec<Taken>, SettingsError> {
+) -> Result<Vec<Taken>, MeasureError> {
+    if let Meter::Callgrind(_) = meter {
+        let render = |contestant| render_once(scene, backend, contestant, every, meter, progress);
+        return contestants.iter().map(render).collect();
+    }
+    render_in_turns(scene, backend, contestants, every, repetitions, meter, progress)
+}
+
+fn render_once(
+    scene: &Scene,
+    backend: &dyn Occlusion,
+    Contestant { method, settings }: &Contestant<'_>,
+    every: u32,
+    meter: &Meter,
+    progress: &Progress,
+) -> Result<Taken, MeasureError> {
+    let mut render = Piecewise::new(scene, backend, &**method, settings, every)?;
+    let before = meter.read()?;
+    while render.advance(progress) {}
+    let least = meter.read()? - before;
+    let Pieces { colours, statistics } = render.finish();
+    Ok(Taken { least, halves: [least; 2], repeated: false, statistics, colours })
+}
+
+fn render_in_turns(
+    scene: &Scene,
+    backend: &dyn Occlusion,
+    contestants: &[Contestant<'_>],
+    every: u32,
+    repetitions: usize,
+    meter: &Meter,
+    progress: &Progress,
+) -> Result<Vec<Taken>, MeasureError> {
     let mut taken = vec![Taken::default(); contestants.len()];
     // By contestant and half, then by piece.
     let mut least: Vec<[Vec<u64>; 2]> = vec![Default::default(); contestants.len()];
     for repetition in 0..repetitions {
-        let begin = || {
+        let begin = || -> Result<Vec<_>, MeasureError> {
             contestants
                 .iter()
                 .map(|Contestant { method, settings }| {
                     Piecewise::new(scene, backend, &**method, settings, every)
                 })
-                .collect::<Result<Vec<_>, _>>()
+                .map(|render| render.map_err(MeasureError::from))
+                .collect()
         };
         let (mut first, mut second) = (begin()?, begin()?);
         for (least, render) in least.iter_mut().zip(&first) {
@@ -79,9 +115,9 @@ pub fn render_in_turns(
         for piece in 0..pieces {
             for which in order_of(contestants.len(), (repetition, piece)) {
                 first[which].advance(progress);
-                let before = meter.read();
+                let before = meter.read()?;
                 if second[which].advance(progress) {
-                    let spent = meter.read() - before;
+                    let spent = meter.read()? - before;
                     let least = &mut least[which][repetition % 2][piece];
                     *least = spent.min(*least);
                 }

@@ -1,22 +1,26 @@
-//! What work is measured in: instructions retired by this thread, where the system counts them, else
+//! What work is measured in: instructions of this thread, counted by Callgrind or by the processor, else
 //! the thread's CPU time.
 //!
 //! The paper counted cycles of an idealised processor with *pixie*, which are the same in every run.
-//! Instructions come nearest to that. Elsewhere, only repetition makes times repeatable: see `lockstep`.
+//! Instructions come nearest to that. Times become repeatable by repetition only: see `lockstep`.
 
 #![allow(unsafe_code)]
 
 use std::ffi::{c_int, c_long};
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::os::fd::FromRawFd;
 
 use serde::Serialize;
+
+use super::callgrind::Callgrind;
 
 /// What a [`Meter`] counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Unit {
+    /// Instructions of this thread on Valgrind's simulated processor.
+    CallgrindInstructions,
     /// Instructions of this thread, those of the system apart.
     Instructions,
     /// Nanoseconds that this thread ran.
@@ -28,6 +32,7 @@ impl Unit {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::CallgrindInstructions => "instructions counted by Callgrind",
             Self::Instructions => "retired instructions",
             Self::CpuNanoseconds => "nanoseconds of CPU time",
         }
@@ -35,44 +40,49 @@ impl Unit {
 }
 
 /// Counts the work of the thread that made it.
-pub struct Meter {
-    /// The counter of the system, if there is one.
-    instructions: Option<File>,
+pub enum Meter {
+    /// By instructions on Valgrind's simulated processor.
+    Callgrind(Callgrind),
+    /// By the system's counter of instructions.
+    Counter(File),
+    /// By the thread's clock.
+    Clock,
 }
 
 impl Meter {
-    /// Starts counting what this thread does.
+    /// Starts counting what this thread does, by the system's counter if there is one.
     #[must_use]
     pub fn start() -> Self {
-        Self { instructions: open_counter() }
+        open_counter().map_or(Self::Clock, Self::Counter)
     }
 
     /// What is counted.
     #[must_use]
     pub fn unit(&self) -> Unit {
-        match self.instructions {
-            Some(_) => Unit::Instructions,
-            None => Unit::CpuNanoseconds,
+        match self {
+            Self::Callgrind(_) => Unit::CallgrindInstructions,
+            Self::Counter(_) => Unit::Instructions,
+            Self::Clock => Unit::CpuNanoseconds,
         }
     }
 
     /// The count so far.
     ///
-    /// # Panics
-    /// If the system stops counting.
-    #[must_use]
-    pub fn read(&self) -> u64 {
-        match &self.instructions {
-            Some(counter) => read_counter(counter).expect("the counter was read before"),
-            None => thread_time(),
+    /// # Errors
+    /// If it cannot be read any more.
+    pub fn read(&self) -> io::Result<u64> {
+        match self {
+            Self::Callgrind(callgrind) => callgrind.read(),
+            Self::Counter(counter) => read_counter(counter),
+            Self::Clock => Ok(thread_time()),
         }
     }
 }
 
-fn read_counter(mut counter: &File) -> Option<u64> {
+fn read_counter(mut counter: &File) -> io::Result<u64> {
     let mut count = [0; 8];
-    counter.read_exact(&mut count).ok()?;
-    Some(u64::from_ne_bytes(count))
+    counter.read_exact(&mut count)?;
+    Ok(u64::from_ne_bytes(count))
 }
 
 /// The first version of the system's `perf_event_attr`.
@@ -138,8 +148,8 @@ fn open_counter() -> Option<File> {
     // SAFETY: the system just opened it, and nobody else knows it.
     let counter = unsafe { File::from_raw_fd(descriptor) };
     // Some virtual machines hand out counters that stand still.
-    let before = read_counter(&counter)?;
-    (read_counter(&counter)? > before).then_some(counter)
+    let before = read_counter(&counter).ok()?;
+    (read_counter(&counter).ok()? > before).then_some(counter)
 }
 
 /// Nanoseconds that the calling thread ran.
@@ -161,9 +171,9 @@ mod tests {
         let meter = Meter::start();
         let mut spent = [0, 0];
         for (spent, rounds) in spent.iter_mut().zip([1_000_000u64, 8_000_000]) {
-            let before = meter.read();
+            let before = meter.read().unwrap();
             std::hint::black_box((0..rounds).fold(0, |sum, n| std::hint::black_box(sum ^ n)));
-            *spent = meter.read() - before;
+            *spent = meter.read().unwrap() - before;
         }
         assert!(spent[0] > 0 && spent[1] > 2 * spent[0], "{spent:?} {}", meter.unit().name());
     }

@@ -7,20 +7,26 @@
 //! (with one voxel cache a light). A *gain* is the share of the entire process that is saved: making
 //! and tessellating the scene, building the structure, rendering; all in one thread.
 
+mod callgrind;
 mod lockstep;
 mod meter;
 mod published;
 mod table;
 mod variants;
 
+use std::path::PathBuf;
+
 use serde::Serialize;
 
-use crate::occlusion::{Backend, BackendError, BuildOptions, Test, build};
-use crate::render::{Order, Progress, RayCounts, Settings, SettingsError};
-use crate::scene::{SceneError, builtin};
+use super::MeasureError;
+use crate::geometry::lanes::Arithmetic;
+use crate::occlusion::{Backend, BuildOptions, Test, build};
+use crate::render::{Order, Piecewise, Progress, RayCounts, Settings};
+use crate::scene::builtin;
 use crate::shadow::{LastVoxel, Method, MethodError, PerPath, Plan, ShadowTally, prepare};
-use lockstep::{Contestant, Taken, render_in_turns};
+use lockstep::{Contestant, Taken, render_all};
 
+pub use callgrind::{Callgrind, LOG, callgrind};
 pub use meter::{Meter, Unit, thread_time};
 pub use published::{Published, Storage, TABLE, storage};
 pub use table::storage_table;
@@ -45,7 +51,7 @@ pub struct Conditions {
     pub size: Option<(u32, u32)>,
     /// Samples along each side of a pixel, instead of the paper's.
     pub samples: Option<u32>,
-    /// Only the middle one of every so many scanlines is rendered.
+    /// Only one of every so many scanlines is rendered: see [`Piecewise::picks`].
     pub every: u32,
     /// Reflections and refractions that a ray may go through.
     pub depth: u8,
@@ -55,6 +61,10 @@ pub struct Conditions {
     pub repetitions: usize,
     /// What the methods have in common.
     pub plan: Plan,
+    /// How the engines are built.
+    pub build: BuildOptions,
+    /// The folder in which Callgrind writes, if it shall count.
+    pub callgrind: Option<PathBuf>,
 }
 
 impl Conditions {
@@ -73,19 +83,32 @@ impl Conditions {
         }
     }
 
-    /// Whether pictures can be made like this.
+    /// Starts counting what this thread does.
+    fn meter(&self) -> Result<Meter, MeasureError> {
+        match &self.callgrind {
+            None => Ok(Meter::start()),
+            Some(folder) => {
+                Callgrind::start(folder).map(Meter::Callgrind).ok_or(MeasureError::NoCallgrind)
+            }
+        }
+    }
+
+    /// Whether pictures of these scenes can be made like this.
     ///
     /// # Errors
     /// Says why not.
-    pub fn check(&self) -> Result<(), PaperError> {
+    pub fn check<'a>(
+        &self,
+        scenes: impl Iterator<Item = &'a Published>,
+    ) -> Result<(), MeasureError> {
         if self.repetitions == 0 {
-            return Err(PaperError::Repetitions);
+            return Err(MeasureError::Repetitions);
         }
-        for column in &TABLE {
-            let settings = self.settings(column.scene);
+        for published in scenes {
+            let settings = self.settings(published.scene);
             settings.check()?;
             if !(1..=settings.height).contains(&self.every) {
-                return Err(PaperError::Every { every: self.every, height: settings.height });
+                return Err(MeasureError::Every { every: self.every, height: settings.height });
             }
         }
         Ok(())
@@ -94,9 +117,11 @@ impl Conditions {
     /// Pixels that will be rendered of a scene, over all repetitions of so many methods.
     fn pixels_by(&self, scene: &str, methods: usize) -> u64 {
         let Settings { width, height, .. } = self.settings(scene);
-        // Everyone renders everything twice: see `lockstep`.
-        let pictures = 2 * self.backends.len() * methods * self.repetitions;
-        u64::from(width) * u64::from(height / self.every) * pictures as u64
+        // See `lockstep`.
+        let times = if self.callgrind.is_some() { 1 } else { 2 * self.repetitions };
+        let pictures = times * self.backends.len() * methods;
+        let rows = (0..height).filter(|&row| Piecewise::picks(row, self.every)).count();
+        u64::from(width) * (rows * pictures) as u64
     }
 
     /// Pixels that will be rendered for the table of a scene.
@@ -110,34 +135,6 @@ impl Conditions {
     pub fn pixels_of_variants(&self, scene: &str) -> u64 {
         self.pixels_by(scene, VARIANTS.len())
     }
-}
-
-/// Why there is no table.
-#[derive(Debug, thiserror::Error)]
-pub enum PaperError {
-    /// The scene cannot be made.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The engine cannot be used.
-    #[error(transparent)]
-    Backend(#[from] BackendError),
-    /// The method cannot be used.
-    #[error(transparent)]
-    Method(#[from] MethodError),
-    /// The picture cannot be made.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    /// Nothing would be measured.
-    #[error("repetitions 0: give at least 1")]
-    Repetitions,
-    /// No scanline would be rendered.
-    #[error("every {every}: give 1 to {height}, the scanlines of the picture")]
-    Every {
-        /// What was asked for.
-        every: u32,
-        /// Scanlines of the smallest picture.
-        height: u32,
-    },
 }
 
 /// A share of the process that is saved, in per cent.
@@ -225,6 +222,8 @@ pub struct SceneReport {
     pub every: u32,
     /// What work is counted in.
     pub unit: Unit,
+    /// The instruction set of our kernels.
+    pub arithmetic: &'static str,
     /// What making and tessellating the scene took.
     pub load: u64,
     /// A column a backend.
@@ -239,17 +238,17 @@ pub fn reproduce(
     published: &Published,
     conditions: &Conditions,
     progress: &Progress,
-) -> Result<SceneReport, PaperError> {
+) -> Result<SceneReport, MeasureError> {
     let settings = conditions.settings(published.scene);
-    let meter = Meter::start();
-    let before = meter.read();
+    let meter = conditions.meter()?;
+    let before = meter.read()?;
     let scene = builtin::draft_at(published.scene, conditions.tessellation)?.finish()?;
-    let load = meter.read() - before;
+    let load = meter.read()? - before;
     let mut columns = Vec::new();
     for &backend in &conditions.backends {
         let test = conditions.test.unwrap_or_else(|| backend.default_test());
-        let before = meter.read();
-        let engine = build(backend, test, &scene.triangles, &BuildOptions::default())?;
+        let before = meter.read()?;
+        let engine = build(backend, test, &scene.triangles, &conditions.build)?;
         let contestants = METHODS
             .iter()
             .map(|&method| {
@@ -257,10 +256,10 @@ pub fn reproduce(
                 Ok(Contestant { method, settings })
             })
             .collect::<Result<Vec<_>, MethodError>>()?;
-        let build = meter.read() - before;
+        let build = meter.read()? - before;
         let Conditions { every, repetitions, .. } = *conditions;
         let taken =
-            render_in_turns(&scene, &*engine, &contestants, every, repetitions, &meter, progress)?;
+            render_all(&scene, &*engine, &contestants, every, repetitions, &meter, progress)?;
         columns.push(column((backend, test), (load, build), every, &taken));
     }
     Ok(SceneReport {
@@ -272,6 +271,7 @@ pub fn reproduce(
         samples_per_pixel: settings.samples * settings.samples,
         every: conditions.every,
         unit: meter.unit(),
+        arithmetic: Arithmetic::of_this_cpu().name(),
         load,
         columns,
     })

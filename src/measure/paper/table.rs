@@ -20,10 +20,11 @@ impl fmt::Display for SceneReport {
         };
         writeln!(
             f,
-            "{} ({}): {width}x{height}, {samples_per_pixel} {samples} a pixel{part}, gains in {}",
+            "{} ({}): {width}x{height}, {samples_per_pixel} {samples} a pixel{part}, gains in {} ({})",
             published.title,
             published.scene,
-            self.unit.name()
+            self.unit.name(),
+            self.arithmetic
         )?;
         let mut row = |name: &str, paper: String, ours: &dyn Fn(&Column) -> String| {
             write!(f, "  {name:NAME$}{paper:>VALUE$}")?;
@@ -49,6 +50,10 @@ impl fmt::Display for SceneReport {
         })?;
         row("voxel cache success", percent(published.voxel_rate), &|column| {
             percent(column.voxel_rate)
+        })?;
+        let either = |object: f64, voxel: f64| percent(object + (1.0 - object / 100.0) * voxel);
+        row("  either", either(published.object_rate, published.voxel_rate), &|column| {
+            either(column.object_rate, column.voxel_rate)
         })?;
         row("gain: object cache over none", none(), &|column| gain(column.object_gain))?;
         let paper = |value: f64| format!("{value} %");

@@ -4,11 +4,12 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::lockstep::{Contestant, Taken, render_in_turns};
+use super::lockstep::{Contestant, Taken, render_all};
 use super::table::gain;
-use super::{Conditions, Gain, Meter, PaperError, Unit, percent};
-use crate::measure::grouped;
-use crate::occlusion::{BuildOptions, build};
+use super::{Conditions, Gain, Unit, percent};
+use crate::geometry::lanes::Arithmetic;
+use crate::measure::{MeasureError, grouped};
+use crate::occlusion::build;
 use crate::render::{Order, Progress, Settings};
 use crate::scene::builtin;
 use crate::shadow::{Method, MethodError, Plan, Retest, SelfShadow, ShadowTally, prepare};
@@ -113,6 +114,8 @@ pub struct VariantReport {
     pub every: u32,
     /// What work is counted in.
     pub unit: Unit,
+    /// The instruction set of our kernels.
+    pub arithmetic: &'static str,
     /// The variants.
     pub variants: Vec<VariantCost>,
     /// Whether all made the same picture, bit for bit, where they rendered the same pixels and their
@@ -129,15 +132,15 @@ pub fn compare_variants(
     name: &'static str,
     conditions: &Conditions,
     progress: &Progress,
-) -> Result<Vec<VariantReport>, PaperError> {
+) -> Result<Vec<VariantReport>, MeasureError> {
     let settings = conditions.settings(name);
     let scene = builtin::draft_at(name, conditions.tessellation)?.finish()?;
-    let meter = Meter::start();
+    let meter = conditions.meter()?;
     let Conditions { every, repetitions, .. } = *conditions;
     let mut reports = Vec::new();
     for &backend in &conditions.backends {
         let test = conditions.test.unwrap_or_else(|| backend.default_test());
-        let engine = build(backend, test, &scene.triangles, &BuildOptions::default())?;
+        let engine = build(backend, test, &scene.triangles, &conditions.build)?;
         let contestants = VARIANTS
             .iter()
             .map(|variant| {
@@ -148,7 +151,7 @@ pub fn compare_variants(
             })
             .collect::<Result<Vec<_>, MethodError>>()?;
         let taken =
-            render_in_turns(&scene, &*engine, &contestants, every, repetitions, &meter, progress)?;
+            render_all(&scene, &*engine, &contestants, every, repetitions, &meter, progress)?;
         reports.push(VariantReport {
             scene: name,
             backend: backend.name(),
@@ -156,6 +159,7 @@ pub fn compare_variants(
             samples_per_pixel: settings.samples * settings.samples,
             every,
             unit: meter.unit(),
+            arithmetic: Arithmetic::of_this_cpu().name(),
             agree: agree(&taken),
             variants: VARIANTS
                 .iter()
@@ -200,9 +204,12 @@ const VALUE: usize = 12;
 
 impl fmt::Display for VariantReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { scene, backend, test, .. } = self;
+        let Self { scene, backend, test, arithmetic, .. } = self;
         let unit = self.unit.name();
-        writeln!(f, "{scene} over {backend} ({test}): {unit} a ray of any kind; of it saved")?;
+        writeln!(
+            f,
+            "{scene} over {backend} ({test}): {unit} ({arithmetic}) a ray of any kind; of it saved"
+        )?;
         writeln!(
             f,
             "  {:NAME$}{:>VALUE$}{:>16}{:>VALUE$}{:>VALUE$}{:>VALUE$}{:>VALUE$}",

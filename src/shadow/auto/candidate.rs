@@ -1,0 +1,69 @@
+//! Whom `auto` may ask, and what that costs beforehand.
+
+use std::sync::OnceLock;
+
+use super::policy::Prices;
+use crate::occlusion::Test;
+use crate::shadow::{Combination, Method, Prepared, SelfShadow, VerdictKind, VerdictSet};
+
+/// Nanoseconds a triangle to group triangles into clusters: 0.2 to 0.3 µs on two cores (docs/methods.md).
+const CLUSTERS: f64 = 300.0;
+
+/// Nanoseconds a triangle to sort clusters by the directions of a light (docs/growth.md).
+const LIGHT_MAP: f64 = 10.0;
+
+/// Nanoseconds a triangle before a memory can be asked over Embree, which needs a grid beside it; other
+/// backends have cells, but that is not known beforehand.
+const CELLS: f64 = 1000.0;
+
+/// A method that is prepared when it is worth it.
+pub(super) struct Candidate<'a> {
+    pub combination: Combination,
+    pub prepared: OnceLock<Box<dyn Prepared + 'a>>,
+}
+
+impl Candidate<'_> {
+    /// Whether it builds while it answers.
+    pub fn builds_for_lights(&self) -> bool {
+        self.combination.verdicts.contains(VerdictKind::LightBuffer)
+    }
+
+    /// Whether it needs the triangles' clusters.
+    pub fn needs_clusters(&self) -> bool {
+        !self.combination.verdicts.is_empty()
+    }
+
+    /// What it is expected to take before it answers the first query.
+    pub fn prices(&self, triangles: usize) -> Prices {
+        let triangles = triangles as f64;
+        let scene = match self.combination.method {
+            Method::Trace if self.needs_clusters() => CLUSTERS,
+            Method::Trace => 0.0,
+            _ => CELLS,
+        };
+        let light = self.builds_for_lights().then_some(LIGHT_MAP * triangles);
+        Prices { scene: scene * triangles, light }
+    }
+}
+
+/// Who is worth asking; first the one that needs nothing.
+///
+/// A verdict's answers are those of exact arithmetic, so verdicts stand before that test only; and they do not go
+/// with leaving out the triangle that a ray starts on. The other verdicts and memories win nowhere that one of these
+/// does not win by more (docs/methods.md).
+pub(super) fn candidates(test: Test, self_shadow: SelfShadow) -> Vec<Combination> {
+    use VerdictKind::{LightBuffer, Shaft};
+    let mut all = vec![Combination::default()];
+    if test == Test::Exact && self_shadow == SelfShadow::Offset {
+        let sets = [
+            VerdictSet::NONE.with(Shaft),
+            VerdictSet::NONE.with(Shaft).with(LightBuffer),
+            VerdictSet::NONE.with(LightBuffer),
+        ];
+        all.extend(sets.map(|verdicts| Combination { verdicts, ..Combination::default() }));
+    } else {
+        all.push(Method::ObjectCache.into());
+    }
+    all.push(Method::CacheTree.into());
+    all
+}
