@@ -35,7 +35,12 @@ impl Order {
 
     /// The pixels of each unit, in the order in which they are rendered; `samples` of them along a pixel's side.
     #[must_use]
-    pub fn units(self, [width, height]: [u32; 2], rows_per_unit: u32, samples: u32) -> Vec<Vec<Place>> {
+    pub fn units(
+        self,
+        [width, height]: [u32; 2],
+        rows_per_unit: u32,
+        samples: u32,
+    ) -> Vec<Vec<Place>> {
         match self {
             Self::Scanline | Self::Serpentine => (0..height)
                 .step_by(rows_per_unit as usize)

@@ -48,9 +48,7 @@ impl Source {
                 let light = splat::<L>(light);
                 (sub(light, [ox, oy, oz]), [dx, dy, dz], 1.0)
             }
-            Self::Direction(direction) => {
-                (splat::<L>(direction), [ox, oy, oz], f32::INFINITY)
-            }
+            Self::Direction(direction) => (splat::<L>(direction), [ox, oy, oz], f32::INFINITY),
         };
         let mut others = L::not_equal(end, L::splat(last));
         let mut sound = L::less_equal(end, end);
