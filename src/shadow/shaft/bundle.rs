@@ -160,8 +160,8 @@ impl Bundle {
                 while lane < WIDTH {
                     let eight = L::rays(&rays, lane);
                     asked |= source.sends::<L>(&eight) << (start + lane);
-                    for axis in 0..3 {
-                        eight[axis].store_to(&mut self.origins[axis][packet], start + lane);
+                    for (origins, coordinates) in self.origins.iter_mut().zip(eight) {
+                        coordinates.store_to(&mut origins[packet], start + lane);
                     }
                     lane += L::COUNT;
                 }
