@@ -1,7 +1,9 @@
 //! `trace`: no memory; the backend answers every query that no verdict settles. The measure of the
 //! other methods' answers.
 
-use super::{Answer, Prepared, ShadowQuery, ShadowTally, Shadows, VerdictReport, Verdicts};
+use super::{
+    Answer, Prepared, ShadowQuery, ShadowTally, Shadows, Verdict, VerdictReport, Verdicts,
+};
 use crate::geometry::Ray;
 use crate::occlusion::Occlusion;
 
@@ -39,6 +41,10 @@ impl Prepared for Trace<'_> {
 
     fn memory(&self) -> usize {
         self.verdicts.memory()
+    }
+
+    fn glass(&self) -> Option<&dyn Verdict> {
+        self.verdicts.glass()
     }
 
     fn verdicts(&self) -> Vec<VerdictReport> {

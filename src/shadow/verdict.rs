@@ -24,6 +24,12 @@ pub trait Verdict: Send + Sync {
         tally: &mut Tally,
     );
 
+    /// What proves that queries meet no *transparent* triangle: `Some(false)` of a query says so. `None` if nothing
+    /// does.
+    fn glass(&self) -> Option<&dyn Verdict> {
+        None
+    }
+
     /// Bytes of what was prepared so far.
     fn memory(&self) -> usize;
 
@@ -168,6 +174,12 @@ impl<'a> Verdicts<'a> {
             before = after;
         }
         before
+    }
+
+    /// What proves that queries meet no transparent triangle, if one of them does.
+    #[must_use]
+    pub fn glass(&self) -> Option<&dyn Verdict> {
+        self.0.iter().find_map(|stacked| stacked.verdict.glass())
     }
 
     /// Bytes of what was prepared so far.

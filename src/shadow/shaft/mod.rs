@@ -50,6 +50,8 @@ pub(super) struct Shafts {
     clusters: Option<Arc<Clusters>>,
     /// Bytes of them, if nobody else counts them.
     bytes: usize,
+    /// Shafts among the transparent triangles, if there are any.
+    glass: Option<Box<Self>>,
     /// Whether bundles that do not stay together are left to a light buffer.
     leaves_spread: bool,
     arithmetic: Arithmetic,
@@ -60,13 +62,28 @@ pub(super) struct Shafts {
 impl Shafts {
     /// Groups the triangles; there is nothing to prepare for lights.
     pub fn new(stock: &Stock<'_>) -> Self {
-        let (scene, (clusters, bytes)) = (stock.scene, stock.clusters());
+        let (clusters, bytes) = stock.clusters();
+        let glass = stock.glass().map(|(clusters, bytes)| {
+            Box::new(Self::among(stock, Some(clusters), bytes, false, None))
+        });
+        let leaves_spread = stock.verdicts.contains(VerdictKind::LightBuffer);
+        Self::among(stock, clusters, bytes, leaves_spread, glass)
+    }
+
+    fn among(
+        stock: &Stock<'_>,
+        clusters: Option<Arc<Clusters>>,
+        bytes: usize,
+        leaves_spread: bool,
+        glass: Option<Box<Self>>,
+    ) -> Self {
         Self {
-            triangles: scene.triangles.clone(),
-            sources: scene.lights.iter().map(Source::new).collect(),
+            triangles: stock.scene.triangles.clone(),
+            sources: stock.scene.lights.iter().map(Source::new).collect(),
             clusters,
             bytes,
-            leaves_spread: stock.verdicts.contains(VerdictKind::LightBuffer),
+            glass,
+            leaves_spread,
             arithmetic: Arithmetic::of_this_cpu(),
             idle: Mutex::new(Vec::new()),
         }
@@ -122,8 +139,12 @@ impl Verdict for Shafts {
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(walker);
     }
 
+    fn glass(&self) -> Option<&dyn Verdict> {
+        self.glass.as_deref().map(|glass| glass as &dyn Verdict)
+    }
+
     fn memory(&self) -> usize {
-        self.bytes
+        self.bytes + self.glass.as_ref().map_or(0, |glass| glass.bytes)
     }
 
     fn notes(&self) -> Vec<String> {
