@@ -49,8 +49,13 @@ fn engine(scene: &Scene, backend: Backend, test: Test) -> Option<Box<dyn Occlusi
 }
 
 /// Renders with `auto` by each clock; all must give the picture of `trace`. How many queries each candidate
-/// answered by the clock that leaps.
+/// answered by the clock that leaps: in one thread, so that it is the same in every run.
 fn check(scene: &Scene, backend: Backend, test: Test, order: Order) -> BTreeMap<String, u64> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| check_here(scene, backend, test, order))
+}
+
+fn check_here(scene: &Scene, backend: Backend, test: Test, order: Order) -> BTreeMap<String, u64> {
     let mut answered = BTreeMap::new();
     let Some(engine) = engine(scene, backend, test) else { return answered };
     let traced = prepare(Method::Trace, scene, &*engine).unwrap();

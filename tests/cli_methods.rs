@@ -117,6 +117,29 @@ fn auto_says_who_answered_and_why_and_gives_the_same_picture() {
     }
 }
 
+#[cfg(feature = "embree")]
+#[test]
+fn over_embree_auto_is_shaft_and_says_so() {
+    let folder = folder();
+    for (arguments, shafts) in [("", true), ("--self-shadow exclude", false)] {
+        let output = run(
+            folder.path(),
+            &format!(
+                "render chair-room -o out.png --size 80x60 --stats out.json --backend embree {arguments}"
+            ),
+        );
+        assert!(output.status.success(), "{}", said(&output));
+        let text = fs::read(folder.path().join("out.json")).unwrap();
+        let stats: Value = serde_json::from_slice(&text).unwrap();
+        assert_eq!(said(&output).contains("auto is shaft"), shafts, "{arguments}");
+        assert_eq!(stats["verdicts"].as_array().unwrap().len() == 1, shafts, "{arguments}");
+        let queries = &stats["counts"]["shadows"];
+        let settled =
+            queries["verdict_lit"].as_u64().unwrap() + queries["verdict_blocked"].as_u64().unwrap();
+        assert_eq!(settled == queries["queries"].as_u64().unwrap(), shafts, "{arguments}");
+    }
+}
+
 #[test]
 fn what_the_memory_limit_makes_coarser_or_leaves_out_is_said() {
     let folder = folder();

@@ -55,6 +55,16 @@ fn a_coarser_grid_has_more_success_with_its_voxels() {
 }
 
 #[test]
+fn quick_leaves_what_is_asked_for() {
+    let (text, _) = paper("--backends grid --tessellation 0.1 --repetitions 2 --every 24");
+    assert!(text.contains("one scanline in 24"), "{text}");
+    assert!(text.contains('±'), "two repetitions have a spread: {text}");
+    let triangles = text.lines().find(|line| line.contains("triangles")).unwrap();
+    let ours: u64 = triangles.split_whitespace().last().unwrap().replace(',', "").parse().unwrap();
+    assert!((4_000..9_000).contains(&ours), "a tenth of 59,692 is not {ours}");
+}
+
+#[test]
 fn callgrind_counts_the_same_every_time() {
     let line = "--backends grid,bvh2 --instructions";
     if !has_valgrind() {

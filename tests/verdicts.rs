@@ -10,7 +10,7 @@ use umbra::exact::{Verdict, oracle::verdict_of_scene};
 use umbra::geometry::Triangle;
 use umbra::occlusion::{Backend, BuildOptions, Occlusion, Tally, Test, build};
 use umbra::render::{Order, Progress, Rendered, Settings, Shown, render};
-use umbra::scene::{Draft, DraftTriangle, Light, Scene, builtin, load};
+use umbra::scene::{Draft, DraftTriangle, Light, Material, Scene, builtin, load};
 use umbra::shadow::{
     Answer, Combination, Method, MethodError, Outcome, Path, Plan, SelfShadow, Settled,
     ShadowQuery, VerdictKind, prepare,
@@ -156,6 +156,46 @@ fn verdicts_are_exact_on_soups() {
     for (kind, settled) in VerdictKind::ALL.iter().zip(sum) {
         assert!(settled.lit > 500 && settled.blocked > 500, "{kind}: {settled:?}");
     }
+}
+
+#[test]
+fn queries_that_meet_glass_are_found_one_and_all() {
+    let glass = Material { transmission: Vec3::splat(0.5), ..Material::default() };
+    let (mut clear, mut attenuated) = (0, 0);
+    for seed in 0..6 {
+        let mut random = Random(seed);
+        let mesh = soup(60, 0.5, seed);
+        let triangle = |(place, corners): (usize, &Triangle)| DraftTriangle {
+            corners: corners.map(|corner| corner.as_dvec3()),
+            normals: [Vec3::ZERO; 3],
+            material: place as u32 % 2,
+        };
+        let draft = Draft {
+            triangles: mesh.iter().enumerate().map(triangle).collect(),
+            materials: vec![Material::default(), glass.clone()],
+            lights: lights(&mesh, &mut random),
+            ..Draft::default()
+        };
+        let scene = draft.finish().unwrap();
+        let options = BuildOptions::default();
+        let brute = build(Backend::Brute, Test::Exact, &scene.triangles, &options).unwrap();
+        let prepared = prepare(VerdictKind::Shaft, &scene, &*brute).unwrap();
+        let glass = prepared.glass().expect("half of the triangles are glass");
+        let mut found = Vec::new();
+        for (light, source) in scene.lights.iter().enumerate() {
+            let asked = queries(&scene, source, 150, &mut random);
+            let mut settled = vec![None; asked.len()];
+            glass.settle_many(light, &asked, &mut settled, &mut Tally::default());
+            for (query, settled) in asked.iter().zip(settled) {
+                brute.transparent(&query.ray, &mut found, &mut Tally::default());
+                let Some(meets) = settled else { continue };
+                assert_eq!(meets, !found.is_empty(), "light {light}, {query:?}");
+                clear += u32::from(!meets);
+                attenuated += u32::from(meets);
+            }
+        }
+    }
+    assert!(clear > 1000 && attenuated > 1000, "{clear} {attenuated}");
 }
 
 /// A lattice of quads, bent into the third dimension; `open` leaves out some.

@@ -111,8 +111,7 @@ input!(
     crate::occlusion::BackendError,
     crate::shadow::MethodError,
     crate::render::SettingsError,
+    crate::measure::MeasureError,
     crate::measure::compare::CompareError,
-    crate::measure::paper::PaperError,
     crate::measure::recording::TooManyQueries,
-    crate::measure::tradeoff::TradeoffError,
 );

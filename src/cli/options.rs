@@ -14,7 +14,7 @@ use crate::occlusion::{Backend, BackendError, BuildOptions, GridOptions, Occlusi
 use crate::scene::Scene;
 use crate::shadow::{
     Auto, Combination, CombinationError, Method, MethodError, Plan, Prepared, Retest, SelfShadow,
-    prepare,
+    VerdictKind, prepare,
 };
 use crate::whole_file::{folder_of, write_whole};
 
@@ -204,7 +204,7 @@ pub(super) struct ShadowOptions {
 /// Names every method.
 fn shadows_help() -> String {
     format!(
-        "What stands before the engine: auto, which asks what turns out to be cheapest, light by light; or {}",
+        "What stands before the engine: auto, which asks what turns out to be cheapest, light by light (over embree: shaft); or {}",
         Combination::names()
     )
 }
@@ -247,8 +247,12 @@ impl ShadowOptions {
         backend: &'a dyn Occlusion,
         engine: &EngineOptions,
     ) -> Result<Box<dyn Prepared + 'a>, MethodError> {
+        // Embree has no exact test, so nobody but Embree gives its bits, and there is nothing to choose among. Shafts answer
+        // all rays to lights, exactly, and in less time than Embree's single rays.
+        let embree = engine.backend == Backend::Embree && self.self_shadow == SelfShadow::Offset;
         let combination = match self.shadows {
             Choice::Given(combination) => combination,
+            Choice::Auto if embree => VerdictKind::Shaft.into(),
             Choice::Auto => Combination::default(),
         };
         let plan = Plan {
@@ -262,6 +266,12 @@ impl ShadowOptions {
         };
         match self.shadows {
             Choice::Given(_) => prepare(plan, scene, backend),
+            Choice::Auto if embree => {
+                say!(
+                    "umbra: over embree, auto is shaft: exact; --shadows trace has Embree's own answers"
+                );
+                prepare(plan, scene, backend)
+            }
             Choice::Auto => Ok(Box::new(Auto::new(plan, engine.test(), scene, backend)?)),
         }
     }

@@ -66,11 +66,16 @@ pub(super) struct Paper {
     /// Reflections and refractions that a ray may go through
     #[arg(long, value_name = "N", default_value_t = 5)]
     depth: u8,
-    /// Factor on the paper's triangles
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    /// Factor on the paper's triangles, from 0.01 to 100
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        default_value_t = 1.0,
+        default_value_if("quick", "true", "0.05")
+    )]
     tessellation: f64,
     /// How often everything is measured; of each piece of a picture the least counts
-    #[arg(long, value_name = "N", default_value_t = 3)]
+    #[arg(long, value_name = "N", default_value_t = 3, default_value_if("quick", "true", "1"))]
     repetitions: usize,
     /// Whether a traversal tests again what was tested from memory
     #[arg(long, value_enum, default_value_t)]
@@ -137,8 +142,6 @@ impl Paper {
         if self.quick {
             conditions.size = conditions.size.or(Some((80, 60)));
             conditions.samples = conditions.samples.or(Some(1));
-            conditions.tessellation *= 0.05;
-            conditions.repetitions = 1;
         }
         conditions
     }
@@ -150,7 +153,7 @@ impl Paper {
 
     pub fn run(self) -> Result<(), Failure> {
         let conditions = self.conditions();
-        conditions.check()?;
+        conditions.check(self.scenes())?;
         let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[])?;
         if self.instructions && self.callgrind_folder.is_none() {

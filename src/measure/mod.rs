@@ -2,6 +2,7 @@
 
 pub mod compare;
 pub mod contender;
+mod error;
 pub mod extremes;
 mod grouped;
 pub mod paper;
@@ -11,4 +12,5 @@ pub mod tradeoff;
 mod truth;
 pub mod wilson;
 
+pub use error::MeasureError;
 pub(crate) use grouped::grouped;

@@ -76,7 +76,7 @@ pub fn render(
     progress: &Progress,
 ) -> Result<Rendered, SettingsError> {
     settings.check()?;
-    let units = settings.order.units(settings.width, settings.height, settings.rows_per_unit);
+    let units = settings.units();
     let done: Vec<_> = units
         .par_iter()
         .map(|pixels| {
@@ -124,7 +124,7 @@ pub fn record(
 ) -> Result<(), SettingsError> {
     settings.check()?;
     let settings = Settings { record: true, ..*settings };
-    let units = settings.order.units(settings.width, settings.height, settings.rows_per_unit);
+    let units = settings.units();
     for pixels in &units {
         let unit = Unit::new(scene, backend, shadows, &settings);
         take(unit.run(pixels, &Progress::default()).queries);

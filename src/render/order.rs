@@ -1,7 +1,14 @@
 //! The order in which pixels are rendered, and how it is cut into units of work.
 
-/// Pixels along the side of a tile.
-const TILE: u32 = 16;
+/// Pixels along the side of the smallest and the largest tiles.
+const SIDES: [u32; 2] = [8, 64];
+
+/// A tile has at most so many samples: shadow queries to one light are answered together, and what a tile asks
+/// should stay in the cache of a core.
+const MOST_SAMPLES: u32 = 10_000;
+
+/// Tiles are made smaller, down to 16 pixels, until there are so many: threads share them.
+const ENOUGH: u32 = 64;
 
 /// The order in which pixels are rendered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, clap::ValueEnum)]
@@ -10,7 +17,7 @@ pub enum Order {
     Scanline,
     /// Row by row, every second one from right to left (§8 of the paper).
     Serpentine,
-    /// Tiles of 16×16 pixels in Morton order, and so the pixels within.
+    /// Square tiles of some thousand samples in Morton order, and so the pixels within.
     #[default]
     Tiles,
 }
@@ -26,9 +33,14 @@ impl Order {
         self == Self::Tiles
     }
 
-    /// The pixels of each unit, in the order in which they are rendered.
+    /// The pixels of each unit, in the order in which they are rendered; `samples` of them along a pixel's side.
     #[must_use]
-    pub fn units(self, width: u32, height: u32, rows_per_unit: u32) -> Vec<Vec<Place>> {
+    pub fn units(
+        self,
+        [width, height]: [u32; 2],
+        rows_per_unit: u32,
+        samples: u32,
+    ) -> Vec<Vec<Place>> {
         match self {
             Self::Scanline | Self::Serpentine => (0..height)
                 .step_by(rows_per_unit as usize)
@@ -37,7 +49,7 @@ impl Order {
                     rows.flat_map(|y| self.row(y, width)).collect()
                 })
                 .collect(),
-            Self::Tiles => tiles(width, height),
+            Self::Tiles => tiles(width, height, side_of_tiles(width, height, samples)),
         }
     }
 
@@ -47,21 +59,34 @@ impl Order {
     }
 }
 
-fn tiles(width: u32, height: u32) -> Vec<Vec<Place>> {
-    let (across, down) = (width.div_ceil(TILE), height.div_ceil(TILE));
+/// Pixels along the side of a tile: a power of two.
+fn side_of_tiles(width: u32, height: u32, samples: u32) -> u32 {
+    let [least, mut side] = SIDES;
+    let a_pixel = samples.saturating_mul(samples);
+    while side > least && (side * side).saturating_mul(a_pixel) > MOST_SAMPLES {
+        side /= 2;
+    }
+    while side > 16 && width.div_ceil(side).saturating_mul(height.div_ceil(side)) < ENOUGH {
+        side /= 2;
+    }
+    side
+}
+
+fn tiles(width: u32, height: u32, side: u32) -> Vec<Vec<Place>> {
+    let (across, down) = (width.div_ceil(side), height.div_ceil(side));
     let mut corners: Vec<Place> =
         (0..down).flat_map(|y| (0..across).map(move |x| (x, y))).collect();
     corners.sort_by_key(|&(x, y)| morton(x, y));
     let within: Vec<Place> = {
         let mut places: Vec<Place> =
-            (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))).collect();
+            (0..side).flat_map(|y| (0..side).map(move |x| (x, y))).collect();
         places.sort_by_key(|&(x, y)| morton(x, y));
         places
     };
     corners
         .into_iter()
         .map(|(tile_x, tile_y)| {
-            let places = within.iter().map(|&(x, y)| (tile_x * TILE + x, tile_y * TILE + y));
+            let places = within.iter().map(|&(x, y)| (tile_x * side + x, tile_y * side + y));
             places.filter(|&(x, y)| x < width && y < height).collect()
         })
         .collect()
@@ -93,7 +118,7 @@ mod tests {
     fn every_order_renders_every_pixel_once() {
         for order in [Order::Scanline, Order::Serpentine, Order::Tiles] {
             for (width, height) in [(1, 1), (17, 33), (100, 3), (16, 16)] {
-                let mut places: Vec<Place> = order.units(width, height, 8).concat();
+                let mut places: Vec<Place> = order.units([width, height], 8, 2).concat();
                 places.sort_unstable();
                 let all: Vec<Place> =
                     (0..width).flat_map(|x| (0..height).map(move |y| (x, y))).collect();
@@ -103,8 +128,17 @@ mod tests {
     }
 
     #[test]
+    fn tiles_hold_some_thousand_samples_of_large_pictures_and_are_many_in_small_ones() {
+        for (samples, side) in [(1, 64), (2, 32), (3, 32), (4, 16), (8, 8), (u32::MAX, 8)] {
+            assert_eq!(side_of_tiles(640, 486, samples), side, "{samples}");
+        }
+        assert_eq!(side_of_tiles(160, 120, 1), 16);
+        assert_eq!(side_of_tiles(1, 1, 1), 16);
+    }
+
+    #[test]
     fn serpentine_rows_meet_end_to_end() {
-        let places = Order::Serpentine.units(5, 4, 4).concat();
+        let places = Order::Serpentine.units([5, 4], 4, 1).concat();
         assert!(places.windows(2).all(|pair| pair[0].0.abs_diff(pair[1].0) <= 1));
     }
 }

@@ -61,7 +61,7 @@ impl<'a> Piecewise<'a> {
         let Settings { width, height, samples, order, .. } = *settings;
         let stretch = (SAMPLES_A_PIECE / (samples * samples)).max(1) as usize;
         let (mut pixels, mut pieces) = (Vec::new(), Vec::new());
-        for (row, unit) in order.units(width, height, 1).into_iter().enumerate() {
+        for (row, unit) in order.units([width, height], 1, samples).into_iter().enumerate() {
             if !Self::picks(row as u32, every) {
                 continue;
             }

@@ -1,5 +1,6 @@
 //! What to render.
 
+use super::order::Place;
 use super::{Order, Shown};
 use crate::shadow::Path;
 
@@ -74,6 +75,12 @@ pub enum SettingsError {
 }
 
 impl Settings {
+    /// The pixels of each unit of work.
+    #[must_use]
+    pub fn units(&self) -> Vec<Vec<Place>> {
+        self.order.units([self.width, self.height], self.rows_per_unit, self.samples)
+    }
+
     /// Whether these settings make a picture.
     ///
     /// # Errors

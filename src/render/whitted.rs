@@ -18,7 +18,7 @@ use super::{Answered, Progress, Settings, Statistics};
 use crate::geometry::{Ray, TriangleId};
 use crate::occlusion::{Occlusion, Tally};
 use crate::scene::Scene;
-use crate::shadow::{Answer, Attenuation, Path, Prepared, ShadowQuery, Shadows};
+use crate::shadow::{Answer, Attenuation, Path, Prepared, ShadowQuery, Shadows, Verdict};
 
 /// Rays that carry less than this share of a pixel's light are not followed.
 const LEAST_THROUGHPUT: f32 = 1.0 / 1024.0;
@@ -58,6 +58,11 @@ pub(super) struct Unit<'a> {
     /// Whether shadow rays start on the surface, and leave out the triangle that they start on.
     leaves_out_spawner: bool,
     attenuation: Attenuation,
+    /// What proves that queries meet nothing transparent.
+    glass: Option<&'a dyn Verdict>,
+    /// Queries that are not blocked, and what it says of them.
+    lit: Vec<ShadowQuery>,
+    clear: Vec<Option<bool>>,
     /// Radiance that each sample of the batch has gathered.
     gathered: Vec<Vec3>,
     done: Done,
@@ -107,6 +112,9 @@ impl<'a> Unit<'a> {
             offset: offset_of(scene),
             leaves_out_spawner: shadows.leaves_out_spawner(),
             attenuation: Attenuation::default(),
+            glass: scene.has_transparent().then(|| shadows.glass()).flatten(),
+            lit: Vec::new(),
+            clear: Vec::new(),
             gathered: Vec::new(),
             done: Done::default(),
             queries: Vec::new(),
@@ -256,6 +264,8 @@ impl<'a> Unit<'a> {
         self.done.statistics.rays.shadow += self.asked.len() as u64;
 
         let transparent = self.scene.has_transparent();
+        self.look_for_glass(light);
+        let mut clear = self.clear.iter();
         for (asked, (&(query, index), answer)) in self.queries.iter().zip(&self.answers).enumerate()
         {
             let vertex = &vertices[index as usize];
@@ -282,7 +292,7 @@ impl<'a> Unit<'a> {
                 source.illuminate(vertex.surface.point).expect("it was asked because it is lit");
             let mut radiance =
                 vertex.surface.shade(self.scene.material(vertex.triangle), &illumination);
-            if transparent {
+            if transparent && clear.next() != Some(&Some(false)) {
                 let spawner = self.leaves_out_spawner.then_some(query.spawner);
                 let before = work(&self.attenuation.tally);
                 radiance *=
@@ -293,6 +303,17 @@ impl<'a> Unit<'a> {
             }
             self.gathered[vertex.sample as usize] += vertex.throughput * radiance;
         }
+    }
+
+    /// Finds which queries that are not blocked certainly meet nothing transparent.
+    fn look_for_glass(&mut self, light: usize) {
+        let Some(glass) = self.glass else { return };
+        let asked = self.asked.iter().zip(&self.answers);
+        self.lit.clear();
+        self.lit.extend(asked.filter(|(_, answer)| !answer.blocked).map(|(query, _)| *query));
+        self.clear.clear();
+        self.clear.resize(self.lit.len(), None);
+        glass.settle_many(light, &self.lit, &mut self.clear, &mut self.attenuation.tally);
     }
 
     /// Has the queries answered; one by one, noting what each costs, if they are to be shown.

@@ -2,7 +2,7 @@
 
 use super::{
     Answer, Direct, Inquiry, Memory, Plan, Prepared, Retest, SelfShadow, ShadowQuery, ShadowTally,
-    Shadows, Shelf, Sparing, VerdictReport, Verdicts,
+    Shadows, Shelf, Sparing, Verdict, VerdictReport, Verdicts,
 };
 use crate::occlusion::Occlusion;
 
@@ -54,6 +54,10 @@ impl<M: Memory, K: Shelf<M>> Prepared for Cached<'_, M, K> {
 
     fn memory(&self) -> usize {
         self.verdicts.memory()
+    }
+
+    fn glass(&self) -> Option<&dyn Verdict> {
+        self.verdicts.glass()
     }
 
     fn verdicts(&self) -> Vec<VerdictReport> {

@@ -80,6 +80,12 @@ pub trait Prepared: Send + Sync {
         Vec::new()
     }
 
+    /// What proves that queries meet no transparent triangle, and so need not be attenuated; `None` if nothing does
+    /// yet.
+    fn glass(&self) -> Option<&dyn Verdict> {
+        None
+    }
+
     /// Who answered, and why; empty if there was no choice.
     fn choices(&self) -> Vec<LightChoices> {
         Vec::new()

@@ -48,6 +48,18 @@ impl<'a> Stock<'a> {
         (clusters.clone(), bytes)
     }
 
+    /// Clusters of the transparent triangles, if there are any and the memory suffices; and their bytes.
+    pub fn glass(&self) -> Option<(Arc<Clusters>, usize)> {
+        let triangles = &self.scene.triangles;
+        let count = triangles.len() - triangles.opaque_count() as usize;
+        let wanted = count > 0 && self.budget.take(CLUSTER_BYTES * count);
+        wanted.then(|| {
+            let clusters = Clusters::of_transparent(triangles);
+            let bytes = clusters.memory();
+            (Arc::new(clusters), bytes)
+        })
+    }
+
     /// The one light buffer of all sets of verdicts that have it.
     pub fn light_buffer(&self) -> Arc<LightBuffer> {
         self.shared.light_buffer.get_or_init(|| Arc::new(LightBuffer::new(self))).clone()

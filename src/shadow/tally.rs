@@ -34,6 +34,15 @@ pub struct ShadowTally {
 }
 
 impl ShadowTally {
+    /// Counts answers of verdicts.
+    #[inline]
+    pub fn count_settled(&mut self, settled: &Settled) {
+        self.queries += settled.lit + settled.blocked;
+        self.blocked += settled.blocked;
+        self.verdict_lit += settled.lit;
+        self.verdict_blocked += settled.blocked;
+    }
+
     /// Counts one answer.
     #[inline]
     pub fn count(&mut self, blocked: bool, outcome: Outcome) {

@@ -1,7 +1,9 @@
 //! `trace`: no memory; the backend answers every query that no verdict settles. The measure of the
 //! other methods' answers.
 
-use super::{Answer, Prepared, ShadowQuery, ShadowTally, Shadows, VerdictReport, Verdicts};
+use super::{
+    Answer, Prepared, ShadowQuery, ShadowTally, Shadows, Verdict, VerdictReport, Verdicts,
+};
 use crate::geometry::Ray;
 use crate::occlusion::Occlusion;
 
@@ -41,6 +43,10 @@ impl Prepared for Trace<'_> {
         self.verdicts.memory()
     }
 
+    fn glass(&self) -> Option<&dyn Verdict> {
+        self.verdicts.glass()
+    }
+
     fn verdicts(&self) -> Vec<VerdictReport> {
         self.verdicts.reports()
     }
@@ -61,19 +67,24 @@ impl Shadows for Worker<'_> {
     fn answer(&mut self, light: usize, queries: &[ShadowQuery], answers: &mut [Answer]) {
         assert_eq!(queries.len(), answers.len(), "one answer a query");
         let Self { backend, verdicts, settled, rays, blocked, tally } = self;
-        verdicts.settle(light, queries, settled, tally);
+        let before = verdicts.settle(light, queries, settled, tally);
+        tally.count_settled(&before);
+        // Those that are not settled are answered anew below.
+        for (answer, settled) in answers.iter_mut().zip(&*settled) {
+            *answer = Answer::settled(*settled == Some(true));
+        }
+        if before.passed_on == 0 {
+            return;
+        }
         let unsettled = queries.iter().zip(&*settled).filter(|(_, settled)| settled.is_none());
         rays.clear();
         rays.extend(unsettled.map(|(query, _)| query.ray));
         blocked.clear();
         blocked.resize(rays.len(), false);
         backend.occluded_many(rays, blocked, &mut tally.backend);
-        let mut traced = blocked.iter();
-        for (answer, settled) in answers.iter_mut().zip(&*settled) {
-            *answer = match *settled {
-                Some(blocked) => Answer::settled(blocked),
-                None => Answer::traversed(*traced.next().expect("an answer a ray")),
-            };
+        let unsettled = answers.iter_mut().zip(&*settled).filter(|(_, settled)| settled.is_none());
+        for ((answer, _), blocked) in unsettled.zip(&*blocked) {
+            *answer = Answer::traversed(*blocked);
             tally.count(answer.blocked, answer.outcome);
         }
     }

@@ -24,6 +24,12 @@ pub trait Verdict: Send + Sync {
         tally: &mut Tally,
     );
 
+    /// What proves that queries meet no *transparent* triangle: `Some(false)` of a query says so. `None` if nothing
+    /// does.
+    fn glass(&self) -> Option<&dyn Verdict> {
+        None
+    }
+
     /// Bytes of what was prepared so far.
     fn memory(&self) -> usize;
 
@@ -99,6 +105,19 @@ pub struct Settled {
     pub passed_on: u64,
 }
 
+impl Settled {
+    fn of(settled: &[Option<bool>]) -> Self {
+        let (lit, blocked) = (count(settled, Some(false)), count(settled, Some(true)));
+        Self { lit, blocked, passed_on: settled.len() as u64 - lit - blocked }
+    }
+}
+
+/// How many are such. In sums of a byte that do not overflow: those are added sixteen at once.
+fn count(settled: &[Option<bool>], such: Option<bool>) -> u64 {
+    let sum = |run: &[Option<bool>]| run.iter().map(|&one| u8::from(one == such)).sum::<u8>();
+    settled.chunks(usize::from(u8::MAX)).map(|run| u64::from(sum(run))).sum()
+}
+
 impl std::ops::AddAssign for Settled {
     fn add_assign(&mut self, other: Self) {
         self.lit += other.lit;
@@ -132,27 +151,21 @@ impl<'a> Verdicts<'a> {
         self.0.is_empty()
     }
 
-    /// Settles what any of them can; a call for each, however many queries.
+    /// Settles what any of them can; a call for each, however many queries. Gives what all of
+    /// them together made of it.
     pub fn settle(
         &self,
         light: usize,
         queries: &[ShadowQuery],
         settled: &mut Vec<Option<bool>>,
         tally: &mut ShadowTally,
-    ) {
+    ) -> Settled {
         settled.clear();
         settled.resize(queries.len(), None);
         let mut before = Settled { passed_on: queries.len() as u64, ..Settled::default() };
         for Stacked { kind, verdict, .. } in &self.0 {
             verdict.settle_many(light, queries, settled, &mut tally.backend);
-            let mut after = Settled::default();
-            for settled in &*settled {
-                match settled {
-                    Some(false) => after.lit += 1,
-                    Some(true) => after.blocked += 1,
-                    None => after.passed_on += 1,
-                }
-            }
+            let after = Settled::of(settled);
             tally.verdicts[kind.index()] += Settled {
                 lit: after.lit - before.lit,
                 blocked: after.blocked - before.blocked,
@@ -160,6 +173,13 @@ impl<'a> Verdicts<'a> {
             };
             before = after;
         }
+        before
+    }
+
+    /// What proves that queries meet no transparent triangle, if one of them does.
+    #[must_use]
+    pub fn glass(&self) -> Option<&dyn Verdict> {
+        self.0.iter().find_map(|stacked| stacked.verdict.glass())
     }
 
     /// Bytes of what was prepared so far.

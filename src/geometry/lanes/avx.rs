@@ -1,4 +1,5 @@
-//! Eight lanes: AVX2 with FMA, and AVX-512 VL, which differs from it only in the reciprocal.
+//! Eight lanes: AVX2 with FMA, and AVX-512 VL, which differs from it in the reciprocal, and has
+//! sixteen at once as well.
 //!
 //! Every `unsafe` here has one reason. SAFETY: [`Avx`] exists in this crate only inside functions
 //! compiled with the instruction set, which run only where `Arithmetic::is_available` found it.
@@ -7,16 +8,33 @@ use std::arch::x86_64::*;
 
 use glam::Vec3A;
 
-use super::{Kernel, Lanes};
-use crate::geometry::TriangleId;
+use super::{Kernel, Lanes, Several, Sixteen};
+use crate::geometry::{Ray, TriangleId};
 
 /// Eight f32. `RCP14`: the reciprocal of AVX-512, else that of AVX.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx<const RCP14: bool>(__m256);
 
-impl<const RCP14: bool> Lanes for Avx<RCP14> {
+/// The widest vectors beside eight lanes.
+pub(crate) trait Widest {
+    type Sixteen: Sixteen;
+}
+
+impl Widest for Avx<false> {
+    type Sixteen = Several<Self, 2>;
+}
+
+impl Widest for Avx<true> {
+    type Sixteen = Zmm;
+}
+
+impl<const RCP14: bool> Lanes for Avx<RCP14>
+where
+    Self: Widest,
+{
     const COUNT: usize = 8;
     type Mask = __m256;
+    type Sixteen = <Self as Widest>::Sixteen;
 
     #[inline(always)]
     fn run<K: Kernel>(kernel: K) -> K::Answer {
@@ -44,6 +62,18 @@ impl<const RCP14: bool> Lanes for Avx<RCP14> {
     fn load_from(values: &[f32], first: usize) -> Self {
         let values: &[f32; 8] = values[first..first + 8].try_into().expect("eight of them");
         Self::load(values, 0)
+    }
+    #[inline(always)]
+    fn rays(rays: &[&Ray; 8], _: usize) -> [Self; 7] {
+        let [ox, oy, oz, _] = columns::<RCP14, 0>(rays);
+        let [dx, dy, dz, end] = columns::<RCP14, 3>(rays);
+        [ox, oy, oz, dx, dy, dz, end]
+    }
+    #[inline(always)]
+    fn store_to(self, values: &mut [f32], first: usize) {
+        let values: &mut [f32; 8] = (&mut values[first..first + 8]).try_into().expect("eight");
+        // SAFETY: see the head of this file; the array holds the eight values that are written.
+        unsafe { _mm256_storeu_ps(values.as_mut_ptr(), self.0) }
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -141,6 +171,68 @@ impl<const RCP14: bool> Lanes for Avx<RCP14> {
     }
 }
 
+/// Sixteen f32 of AVX-512.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Zmm(__m512);
+
+impl Sixteen for Zmm {
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_set1_ps(value) })
+    }
+    #[inline(always)]
+    fn load(values: &[f32; 16]) -> Self {
+        // SAFETY: see the head of this file; the array holds the sixteen values that are read.
+        Self(unsafe { _mm512_loadu_ps(values.as_ptr()) })
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_sub_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_mul_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_fmadd_ps(self.0, b.0, c.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_min_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_max_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> u16 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn less_equal(self, other: Self) -> u16 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn least(self) -> f32 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm512_reduce_min_ps(self.0) }
+    }
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        // SAFETY: see the head of this file.
+        unsafe { _mm512_reduce_max_ps(self.0) }
+    }
+}
+
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn run_avx2<K: Kernel>(kernel: K) -> K::Answer {
     kernel.run()
@@ -175,5 +267,35 @@ fn pair(rows: [&[Vec3A; 3]; 8], corner: usize, i: usize) -> __m256 {
     unsafe {
         let low = _mm256_castps128_ps256(rows[i][corner].into());
         _mm256_insertf128_ps::<1>(low, rows[i + 4][corner].into())
+    }
+}
+
+/// Four values of each of eight rays, from the `FIRST`, 0 or 3, on.
+#[inline(always)]
+fn columns<const RCP14: bool, const FIRST: usize>(rays: &[&Ray; 8]) -> [Avx<RCP14>; 4] {
+    // SAFETY: see the head of this file.
+    unsafe {
+        let (r0, r1) = (two_rays::<FIRST>(rays, 0), two_rays::<FIRST>(rays, 1));
+        let (r2, r3) = (two_rays::<FIRST>(rays, 2), two_rays::<FIRST>(rays, 3));
+        let (low01, high01) = (_mm256_unpacklo_ps(r0, r1), _mm256_unpackhi_ps(r0, r1));
+        let (low23, high23) = (_mm256_unpacklo_ps(r2, r3), _mm256_unpackhi_ps(r2, r3));
+        [
+            Avx(_mm256_shuffle_ps::<0x44>(low01, low23)),
+            Avx(_mm256_shuffle_ps::<0xEE>(low01, low23)),
+            Avx(_mm256_shuffle_ps::<0x44>(high01, high23)),
+            Avx(_mm256_shuffle_ps::<0xEE>(high01, high23)),
+        ]
+    }
+}
+
+/// Of rays `i` and `i + 4`, in one register.
+#[inline(always)]
+fn two_rays<const FIRST: usize>(rays: &[&Ray; 8], i: usize) -> __m256 {
+    const { assert!(FIRST <= 3 && size_of::<Ray>() == 7 * size_of::<f32>()) };
+    // SAFETY: see the head of this file; a ray is seven f32 in a row, of which four from `FIRST` on are read.
+    unsafe {
+        let (a, b) = (std::ptr::from_ref(rays[i]), std::ptr::from_ref(rays[i + 4]));
+        let low = _mm256_castps128_ps256(_mm_loadu_ps(a.cast::<f32>().add(FIRST)));
+        _mm256_insertf128_ps::<1>(low, _mm_loadu_ps(b.cast::<f32>().add(FIRST)))
     }
 }

@@ -17,6 +17,7 @@
 #[cfg(target_arch = "x86_64")]
 mod avx;
 mod scalar;
+mod sixteen;
 #[cfg(target_arch = "x86_64")]
 mod sse;
 
@@ -25,13 +26,14 @@ use std::marker::PhantomData;
 use glam::{Vec3, Vec3A};
 
 pub use scalar::Scalar;
+pub use sixteen::{Several, Sixteen};
 
 #[cfg(target_arch = "x86_64")]
 use avx::Avx;
 #[cfg(target_arch = "x86_64")]
 use sse::Sse;
 
-use super::TriangleId;
+use super::{Ray, TriangleId};
 
 /// Something to be compiled for the instruction set of some lanes.
 pub trait Kernel {
@@ -67,6 +69,8 @@ pub trait Lanes: Copy {
     const COUNT: usize;
     /// The result of a comparison, a truth value a lane.
     type Mask: Copy;
+    /// Sixteen values in the widest vectors there are.
+    type Sixteen: Sixteen;
 
     /// Runs a kernel, compiled for the instruction set of these lanes.
     fn run<K: Kernel>(kernel: K) -> K::Answer;
@@ -79,6 +83,10 @@ pub trait Lanes: Copy {
     fn load(values: &[f32; 8], first: usize) -> Self;
     /// `COUNT` values from `first` on.
     fn load_from(values: &[f32], first: usize) -> Self;
+    /// Of `COUNT` of eight rays, from `first` on: origins, directions, ends. `first` is a multiple of `COUNT`.
+    fn rays(rays: &[&Ray; 8], first: usize) -> [Self; 7];
+    /// Writes `COUNT` values from `first` on.
+    fn store_to(self, values: &mut [f32], first: usize);
     /// Sum, rounded.
     fn add(self, other: Self) -> Self;
     /// Difference, rounded.

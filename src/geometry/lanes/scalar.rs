@@ -2,8 +2,8 @@
 
 use glam::Vec3A;
 
-use super::{Kernel, Lanes};
-use crate::geometry::TriangleId;
+use super::{Kernel, Lanes, Several};
+use crate::geometry::{Ray, TriangleId};
 
 /// One f32 with the arithmetic of a lane: `FUSED` multiply-add or not, and, where `FUSED`, the
 /// reciprocal of AVX-512 (`RCP14`) or of AVX2.
@@ -13,6 +13,7 @@ pub struct Scalar<const FUSED: bool, const RCP14: bool>(pub f32);
 impl<const FUSED: bool, const RCP14: bool> Lanes for Scalar<FUSED, RCP14> {
     const COUNT: usize = 1;
     type Mask = bool;
+    type Sixteen = Several<Self, 16>;
 
     #[inline(always)]
     fn run<K: Kernel>(kernel: K) -> K::Answer {
@@ -33,6 +34,15 @@ impl<const FUSED: bool, const RCP14: bool> Lanes for Scalar<FUSED, RCP14> {
     #[inline(always)]
     fn load_from(values: &[f32], first: usize) -> Self {
         Self(values[first])
+    }
+    #[inline(always)]
+    fn rays(rays: &[&Ray; 8], first: usize) -> [Self; 7] {
+        let Ray { origin: o, direction: d, end } = *rays[first];
+        [Self(o.x), Self(o.y), Self(o.z), Self(d.x), Self(d.y), Self(d.z), Self(end)]
+    }
+    #[inline(always)]
+    fn store_to(self, values: &mut [f32], first: usize) {
+        values[first] = self.0;
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {

@@ -6,8 +6,8 @@ use std::arch::x86_64::*;
 
 use glam::Vec3A;
 
-use super::{Kernel, Lanes};
-use crate::geometry::TriangleId;
+use super::{Kernel, Lanes, Several};
+use crate::geometry::{Ray, TriangleId};
 
 /// Four f32, multiply-add rounded twice.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,7 @@ pub(crate) struct Sse(__m128);
 impl Lanes for Sse {
     const COUNT: usize = 4;
     type Mask = __m128;
+    type Sixteen = Several<Self, 4>;
 
     #[inline(always)]
     fn run<K: Kernel>(kernel: K) -> K::Answer {
@@ -44,6 +45,25 @@ impl Lanes for Sse {
         let values: &[f32; 4] = values[first..first + 4].try_into().expect("four of them");
         // SAFETY: see the head of this file; the array holds the four values that are read.
         Self(unsafe { _mm_loadu_ps(values.as_ptr()) })
+    }
+    #[inline(always)]
+    fn rays(rays: &[&Ray; 8], first: usize) -> [Self; 7] {
+        let mut values = [[0.0; 4]; 7];
+        for lane in 0..4 {
+            let Ray { origin, direction, end } = rays[first + lane];
+            for axis in 0..3 {
+                values[axis][lane] = origin[axis];
+                values[3 + axis][lane] = direction[axis];
+            }
+            values[6][lane] = *end;
+        }
+        values.map(|values| Self::load_from(&values, 0))
+    }
+    #[inline(always)]
+    fn store_to(self, values: &mut [f32], first: usize) {
+        let values: &mut [f32; 4] = (&mut values[first..first + 4]).try_into().expect("four");
+        // SAFETY: see the head of this file; the array holds the four values that are written.
+        unsafe { _mm_storeu_ps(values.as_mut_ptr(), self.0) }
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {

@@ -17,7 +17,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glam::Vec3;
 
-use super::{Meter, PaperError};
+use super::Meter;
+use crate::measure::MeasureError;
 use crate::occlusion::Occlusion;
 use crate::render::{Pieces, Piecewise, Place, Progress, Settings, Statistics};
 use crate::scene::Scene;
@@ -59,7 +60,7 @@ pub fn render_all(
     repetitions: usize,
     meter: &Meter,
     progress: &Progress,
-) -> Result<Vec<Taken>, PaperError> {
+) -> Result<Vec<Taken>, MeasureError> {
     if let Meter::Callgrind(_) = meter {
         let render = |contestant| render_once(scene, backend, contestant, every, meter, progress);
         return contestants.iter().map(render).collect();
@@ -74,7 +75,7 @@ fn render_once(
     every: u32,
     meter: &Meter,
     progress: &Progress,
-) -> Result<Taken, PaperError> {
+) -> Result<Taken, MeasureError> {
     let mut render = Piecewise::new(scene, backend, &**method, settings, every)?;
     let before = meter.read()?;
     while render.advance(progress) {}
@@ -91,18 +92,18 @@ fn render_in_turns(
     repetitions: usize,
     meter: &Meter,
     progress: &Progress,
-) -> Result<Vec<Taken>, PaperError> {
+) -> Result<Vec<Taken>, MeasureError> {
     let mut taken = vec![Taken::default(); contestants.len()];
     // By contestant and half, then by piece.
     let mut least: Vec<[Vec<u64>; 2]> = vec![Default::default(); contestants.len()];
     for repetition in 0..repetitions {
-        let begin = || -> Result<Vec<_>, PaperError> {
+        let begin = || -> Result<Vec<_>, MeasureError> {
             contestants
                 .iter()
                 .map(|Contestant { method, settings }| {
                     Piecewise::new(scene, backend, &**method, settings, every)
                 })
-                .map(|render| render.map_err(PaperError::from))
+                .map(|render| render.map_err(MeasureError::from))
                 .collect()
         };
         let (mut first, mut second) = (begin()?, begin()?);

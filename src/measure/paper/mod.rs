@@ -14,15 +14,15 @@ mod published;
 mod table;
 mod variants;
 
-use std::io;
 use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::MeasureError;
 use crate::geometry::lanes::Arithmetic;
-use crate::occlusion::{Backend, BackendError, BuildOptions, Test, build};
-use crate::render::{Order, Piecewise, Progress, RayCounts, Settings, SettingsError};
-use crate::scene::{SceneError, builtin};
+use crate::occlusion::{Backend, BuildOptions, Test, build};
+use crate::render::{Order, Piecewise, Progress, RayCounts, Settings};
+use crate::scene::builtin;
 use crate::shadow::{LastVoxel, Method, MethodError, PerPath, Plan, ShadowTally, prepare};
 use lockstep::{Contestant, Taken, render_all};
 
@@ -84,28 +84,31 @@ impl Conditions {
     }
 
     /// Starts counting what this thread does.
-    fn meter(&self) -> Result<Meter, PaperError> {
+    fn meter(&self) -> Result<Meter, MeasureError> {
         match &self.callgrind {
             None => Ok(Meter::start()),
             Some(folder) => {
-                Callgrind::start(folder).map(Meter::Callgrind).ok_or(PaperError::NoCallgrind)
+                Callgrind::start(folder).map(Meter::Callgrind).ok_or(MeasureError::NoCallgrind)
             }
         }
     }
 
-    /// Whether pictures can be made like this.
+    /// Whether pictures of these scenes can be made like this.
     ///
     /// # Errors
     /// Says why not.
-    pub fn check(&self) -> Result<(), PaperError> {
+    pub fn check<'a>(
+        &self,
+        scenes: impl Iterator<Item = &'a Published>,
+    ) -> Result<(), MeasureError> {
         if self.repetitions == 0 {
-            return Err(PaperError::Repetitions);
+            return Err(MeasureError::Repetitions);
         }
-        for column in &TABLE {
-            let settings = self.settings(column.scene);
+        for published in scenes {
+            let settings = self.settings(published.scene);
             settings.check()?;
             if !(1..=settings.height).contains(&self.every) {
-                return Err(PaperError::Every { every: self.every, height: settings.height });
+                return Err(MeasureError::Every { every: self.every, height: settings.height });
             }
         }
         Ok(())
@@ -132,40 +135,6 @@ impl Conditions {
     pub fn pixels_of_variants(&self, scene: &str) -> u64 {
         self.pixels_by(scene, VARIANTS.len())
     }
-}
-
-/// Why there is no table.
-#[derive(Debug, thiserror::Error)]
-pub enum PaperError {
-    /// The scene cannot be made.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The engine cannot be used.
-    #[error(transparent)]
-    Backend(#[from] BackendError),
-    /// The method cannot be used.
-    #[error(transparent)]
-    Method(#[from] MethodError),
-    /// The picture cannot be made.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    /// The count of instructions cannot be read.
-    #[error("cannot read the count of instructions: {0}")]
-    Meter(#[from] io::Error),
-    /// Callgrind shall count and does not run.
-    #[error("Callgrind counts only in programs that Valgrind runs on x86-64")]
-    NoCallgrind,
-    /// Nothing would be measured.
-    #[error("repetitions 0: give at least 1")]
-    Repetitions,
-    /// No scanline would be rendered.
-    #[error("every {every}: give 1 to {height}, the scanlines of the picture")]
-    Every {
-        /// What was asked for.
-        every: u32,
-        /// Scanlines of the smallest picture.
-        height: u32,
-    },
 }
 
 /// A share of the process that is saved, in per cent.
@@ -269,7 +238,7 @@ pub fn reproduce(
     published: &Published,
     conditions: &Conditions,
     progress: &Progress,
-) -> Result<SceneReport, PaperError> {
+) -> Result<SceneReport, MeasureError> {
     let settings = conditions.settings(published.scene);
     let meter = conditions.meter()?;
     let before = meter.read()?;

@@ -51,6 +51,10 @@ impl fmt::Display for SceneReport {
         row("voxel cache success", percent(published.voxel_rate), &|column| {
             percent(column.voxel_rate)
         })?;
+        let either = |object: f64, voxel: f64| percent(object + (1.0 - object / 100.0) * voxel);
+        row("  either", either(published.object_rate, published.voxel_rate), &|column| {
+            either(column.object_rate, column.voxel_rate)
+        })?;
         row("gain: object cache over none", none(), &|column| gain(column.object_gain))?;
         let paper = |value: f64| format!("{value} %");
         row("gain: voxel over object cache", paper(published.voxel_gain), &|column| {

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::lockstep::{Contestant, Taken, render_all};
 use super::table::gain;
-use super::{Conditions, Gain, PaperError, Unit, percent};
+use super::{Conditions, Gain, Unit, percent};
 use crate::geometry::lanes::Arithmetic;
-use crate::measure::grouped;
+use crate::measure::{MeasureError, grouped};
 use crate::occlusion::build;
 use crate::render::{Order, Progress, Settings};
 use crate::scene::builtin;
@@ -132,7 +132,7 @@ pub fn compare_variants(
     name: &'static str,
     conditions: &Conditions,
     progress: &Progress,
-) -> Result<Vec<VariantReport>, PaperError> {
+) -> Result<Vec<VariantReport>, MeasureError> {
     let settings = conditions.settings(name);
     let scene = builtin::draft_at(name, conditions.tessellation)?.finish()?;
     let meter = conditions.meter()?;

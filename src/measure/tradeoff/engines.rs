@@ -11,9 +11,10 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::Conditions;
 use super::timing::{Timing, turns};
-use super::{Conditions, TradeoffError};
 use crate::exact::Verdict;
+use crate::measure::MeasureError;
 use crate::measure::contender::Contender;
 use crate::measure::recording::Recording;
 use crate::measure::truth::Truths;
@@ -100,7 +101,7 @@ pub(super) fn measure(
     recording: &Recording,
     conditions: &Conditions,
     progress: &Progress,
-) -> Result<Measured, TradeoffError> {
+) -> Result<Measured, MeasureError> {
     let truths = Truths::new(scene.triangles.clone());
     let queries = recording.queries().par_iter();
     let truth: Vec<Verdict> =
@@ -137,7 +138,7 @@ fn take_turn(
     contender: &Contender,
     scene: &Scene,
     recording: &Recording,
-) -> Result<(Turn, Vec<Vec<bool>>), TradeoffError> {
+) -> Result<(Turn, Vec<Vec<bool>>), MeasureError> {
     let start = Instant::now();
     let engine = contender.build(&scene.triangles)?;
     let method = contender.prepare(scene, &*engine)?;

@@ -21,13 +21,12 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::MeasureError;
 use super::contender::Contender;
 use super::grouped;
-use super::recording::{Recording, TooManyQueries};
-use crate::occlusion::BackendError;
-use crate::render::{Film, Progress, Settings, SettingsError};
-use crate::scene::{Scene, SceneError, builtin};
-use crate::shadow::MethodError;
+use super::recording::Recording;
+use crate::render::{Film, Progress, Settings};
+use crate::scene::{Scene, builtin};
 use masks::Masks;
 
 pub use charts::plot;
@@ -65,9 +64,9 @@ impl Conditions {
     ///
     /// # Errors
     /// Says why not.
-    pub fn check(&self) -> Result<(), TradeoffError> {
+    pub fn check(&self) -> Result<(), MeasureError> {
         if self.repetitions == 0 {
-            return Err(TradeoffError::Repetitions);
+            return Err(MeasureError::Repetitions);
         }
         Ok(self.settings.check()?)
     }
@@ -80,32 +79,6 @@ impl Conditions {
         let samples = 1 + self.repetitions * self.samples.len();
         (self.repetitions * self.contenders.len() + tessellations + samples) as u64
     }
-}
-
-/// Why nothing was measured.
-#[derive(Debug, thiserror::Error)]
-pub enum TradeoffError {
-    /// A scene cannot be made.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// An engine cannot be used.
-    #[error(transparent)]
-    Backend(#[from] BackendError),
-    /// A method cannot be used.
-    #[error(transparent)]
-    Method(#[from] MethodError),
-    /// The picture cannot be made.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    /// There would be too much to ask.
-    #[error(transparent)]
-    Queries(#[from] TooManyQueries),
-    /// Nothing would be measured.
-    #[error("repetitions 0: give at least 1")]
-    Repetitions,
-    /// Nothing to answer.
-    #[error("the picture asks no shadow query: no surface in it faces a light")]
-    NoQueries,
 }
 
 /// Where and how it was measured.
@@ -218,13 +191,13 @@ pub fn measure(
     scene: &Scene,
     conditions: &Conditions,
     progress: &Progress,
-) -> Result<Report, TradeoffError> {
+) -> Result<Report, MeasureError> {
     conditions.check()?;
     let Conditions { settings, repetitions, .. } = conditions;
     Recording::check(scene, settings)?;
     let recording = Recording::of(scene, settings, &Progress::default())?;
     if recording.queries().is_empty() {
-        return Err(TradeoffError::NoQueries);
+        return Err(MeasureError::NoQueries);
     }
     let (_, film) = pictures::picture(scene, settings)?;
     let measured = engines::measure(scene, &recording, conditions, progress)?;

@@ -8,9 +8,9 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::TradeoffError;
 use super::picture_error::PictureError;
 use super::timing::{Timing, turns};
+use crate::measure::MeasureError;
 use crate::occlusion::{Backend, BuildOptions, Test, build};
 use crate::render::{Film, Progress, Rendered, Settings, render};
 use crate::scene::{Scene, builtin};
@@ -71,7 +71,7 @@ pub(super) fn tessellation(
     settings: &Settings,
     repetitions: usize,
     progress: &Progress,
-) -> Result<PictureTrade<TessellationPoint>, TradeoffError> {
+) -> Result<PictureTrade<TessellationPoint>, MeasureError> {
     let (_, scene, best) = tessellate(name, reference, settings)?;
     progress.pixels.fetch_add(1, Relaxed);
     let exposure = scene.exposure.unwrap_or_else(|| best.automatic_exposure());
@@ -110,7 +110,7 @@ fn tessellate(
     name: &str,
     factor: f64,
     settings: &Settings,
-) -> Result<(f64, Scene, Film), TradeoffError> {
+) -> Result<(f64, Scene, Film), MeasureError> {
     let start = Instant::now();
     let scene = builtin::draft_at(name, factor)?.finish()?;
     let (_, film) = picture(&scene, settings)?;
@@ -125,7 +125,7 @@ pub(super) fn samples(
     settings: &Settings,
     repetitions: usize,
     progress: &Progress,
-) -> Result<PictureTrade<SamplesPoint>, TradeoffError> {
+) -> Result<PictureTrade<SamplesPoint>, MeasureError> {
     let with = |samples: u32| picture(scene, &Settings { samples, ..*settings });
     let (_, best) = with(reference)?;
     progress.pixels.fetch_add(1, Relaxed);
@@ -156,7 +156,7 @@ pub(super) fn samples(
 }
 
 /// Seconds of rendering, the building apart, and the picture.
-pub(super) fn picture(scene: &Scene, settings: &Settings) -> Result<(f64, Film), TradeoffError> {
+pub(super) fn picture(scene: &Scene, settings: &Settings) -> Result<(f64, Film), MeasureError> {
     let engine = build(Backend::Grid, Test::Exact, &scene.triangles, &BuildOptions::default())?;
     let start = Instant::now();
     let rendered = render(scene, &*engine, &Trace::new(&*engine), settings, &Progress::default());

@@ -8,6 +8,8 @@
 //! MacDonald, Booth: Heuristics for Ray Tracing Using Space Subdivision. The Visual Computer 6(3), 1990.
 //! Wald: On Fast Construction of SAH-based Bounding Volume Hierarchies. Symposium on Interactive Ray Tracing 2007.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::{Child, Cluster, Clusters, Node, WIDTH};
@@ -19,10 +21,8 @@ const BINS: usize = 16;
 /// Ranges with fewer triangles are split by one thread.
 const WORTH_A_THREAD: usize = 8192;
 
-pub(super) fn build(triangles: &Triangles) -> Clusters {
-    let mut items: Vec<Item> = (0..triangles.opaque_count())
-        .map(|id| Item { bounds: triangles.bounds_of(id), id })
-        .collect();
+pub(super) fn build(triangles: &Triangles, ids: Range<TriangleId>) -> Clusters {
+    let mut items: Vec<Item> = ids.map(|id| Item { bounds: triangles.bounds_of(id), id }).collect();
     if items.is_empty() {
         return Clusters::default();
     }

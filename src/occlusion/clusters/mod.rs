@@ -1,4 +1,4 @@
-//! Clusters: opaque triangles in groups of eight neighbours, stored as one vector test wants them.
+//! Clusters: triangles in groups of eight neighbours, stored as one vector test wants them.
 //!
 //! A test of eight triangles at once costs little more than a test of one, as long as their corners lie
 //! side by side: gathering them from all over the scene costs more than the test. Light structures
@@ -77,7 +77,7 @@ impl Cluster {
     }
 }
 
-/// All opaque triangles of a scene, in clusters, and the tree over them.
+/// All opaque triangles of a scene, or all transparent ones, in clusters, and the tree over them.
 #[derive(Clone, Debug, Default)]
 pub struct Clusters {
     clusters: Vec<Cluster>,
@@ -89,7 +89,13 @@ impl Clusters {
     /// Groups the opaque triangles, and builds the tree, in parallel.
     #[must_use]
     pub fn new(triangles: &Triangles) -> Self {
-        build::build(triangles)
+        build::build(triangles, 0..triangles.opaque_count())
+    }
+
+    /// The same of the transparent ones.
+    #[must_use]
+    pub fn of_transparent(triangles: &Triangles) -> Self {
+        build::build(triangles, triangles.opaque_count()..triangles.len() as u32)
     }
 
     /// The clusters; neighbours in space are neighbours here, mostly.
@@ -99,7 +105,7 @@ impl Clusters {
         &self.clusters
     }
 
-    /// The nodes of the tree, the root first; none without opaque triangles.
+    /// The nodes of the tree, the root first; none without triangles.
     #[inline(always)]
     pub(crate) fn nodes(&self) -> &[Node] {
         &self.nodes

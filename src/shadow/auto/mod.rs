@@ -29,7 +29,8 @@ use worker::Worker;
 use super::plan::prepare_from;
 use super::stock::Stock;
 use super::{
-    MethodError, Plan, Prepared, SelfShadow, ShadowQuery, Shadows, VerdictReport, VerdictSet,
+    MethodError, Plan, Prepared, SelfShadow, ShadowQuery, Shadows, Verdict, VerdictReport,
+    VerdictSet,
 };
 use crate::geometry::Bounds;
 use crate::occlusion::{Occlusion, Test};
@@ -190,6 +191,11 @@ impl Prepared for Auto<'_> {
             }
         }
         reports
+    }
+
+    fn glass(&self) -> Option<&dyn Verdict> {
+        let prepared = self.candidates.iter().filter_map(|candidate| candidate.prepared.get());
+        prepared.filter_map(|prepared| prepared.glass()).next()
     }
 
     fn choices(&self) -> Vec<LightChoices> {

@@ -1,16 +1,13 @@
 //! Up to 256 queries to one light, side by side, and boxes around them and their parts.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
+use super::planes::Ground;
 use crate::geometry::Ray;
+use crate::geometry::lanes::{Lanes, Sixteen, splat, sub};
+use crate::occlusion::WIDTH;
 use crate::scene::Light;
 use crate::shadow::ShadowQuery;
-
-/// A bundle whose packets are on average larger than this part of it is not kept together by halving it.
-const SPREAD_WHOLE: f32 = 0.4;
-
-/// And one whose packets are so many times larger than clusters: shafts that wide are full of them.
-const SPREAD_CLUSTERS: f32 = 16.0;
 
 /// Largest coordinates of bundles that are answered here: products of four of them stay within f32.
 const MAGNITUDES: std::ops::Range<f32> = 1e-6..1e9;
@@ -41,17 +38,68 @@ impl Source {
         }
     }
 
-    /// Whether this is a ray to the light, bit for bit.
+    /// Which of the rays are rays to the light, bit for bit: a bit each. Rays as [`Lanes::rays`] gives them.
     #[inline(always)]
-    fn sends(&self, ray: &Ray) -> bool {
-        match *self {
+    fn sends<L: Lanes>(&self, rays: &[L; 7]) -> u32 {
+        let [ox, oy, oz, dx, dy, dz, end] = *rays;
+        // What is compared with the direction, what must be finite, and the end.
+        let (expected, finite, last) = match *self {
             Self::Point(light) => {
-                light - ray.origin == ray.direction && ray.end == 1.0 && ray.direction.is_finite()
+                let light = splat::<L>(light);
+                (sub(light, [ox, oy, oz]), [dx, dy, dz], 1.0)
             }
-            Self::Direction(direction) => {
-                ray.direction == direction && ray.end == f32::INFINITY && ray.origin.is_finite()
-            }
+            Self::Direction(direction) => (splat::<L>(direction), [ox, oy, oz], f32::INFINITY),
+        };
+        let mut others = L::not_equal(end, L::splat(last));
+        let mut sound = L::less_equal(end, end);
+        for (axis, direction) in [dx, dy, dz].into_iter().enumerate() {
+            others = L::or(others, L::not_equal(direction, expected[axis]));
+            sound = L::and(sound, L::less_equal(finite[axis].abs(), L::splat(f32::MAX)));
         }
+        L::bits(sound) & !L::bits(others)
+    }
+}
+
+/// Up to a bundle of queries, in an order.
+#[derive(Clone, Copy)]
+pub(super) struct Chosen<'a> {
+    queries: &'a [ShadowQuery],
+    /// Which of them.
+    places: &'a [u32],
+}
+
+impl<'a> Chosen<'a> {
+    pub fn new(queries: &'a [ShadowQuery], places: &'a [u32]) -> Self {
+        Self { queries, places }
+    }
+
+    #[inline(always)]
+    pub fn count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The ray of one of them.
+    #[inline(always)]
+    pub fn ray(&self, index: usize) -> &'a Ray {
+        &self.queries[self.places[index] as usize].ray
+    }
+
+    /// Eight rays from `first` on; the last one is repeated.
+    #[inline(always)]
+    fn rays(&self, first: usize) -> [&'a Ray; WIDTH] {
+        let Some(eight) = self.places.get(first..first + WIDTH) else {
+            let last = self.places.len() - 1;
+            let mut rays = [self.ray(last); WIDTH];
+            for (lane, ray) in rays.iter_mut().enumerate() {
+                *ray = self.ray((first + lane).min(last));
+            }
+            return rays;
+        };
+        let mut rays = [&self.queries[eight[0] as usize].ray; WIDTH];
+        for lane in 1..WIDTH {
+            rays[lane] = &self.queries[eight[lane] as usize].ray;
+        }
+        rays
     }
 }
 
@@ -70,8 +118,10 @@ impl OriginBox {
 /// `PACKETS + p` is that of packet `p`.
 pub(super) struct Bundle {
     /// Origins relative to the centre, by axis; places not used repeat the first.
-    pub origins: [[f32; BUNDLE]; 3],
+    pub origins: [[[f32; PACKET]; PACKETS]; 3],
     pub centre: Vec3,
+    /// What planes are made for; it may serve several bundles to one light.
+    pub ground: Option<Ground>,
     pub boxes: [OriginBox; 2 * PACKETS],
     /// A bit a query that is a ray to the light.
     pub asked: [u16; PACKETS],
@@ -84,8 +134,9 @@ pub(super) struct Bundle {
 impl Bundle {
     pub const fn empty() -> Self {
         Self {
-            origins: [[0.0; BUNDLE]; 3],
+            origins: [[[0.0; PACKET]; PACKETS]; 3],
             centre: Vec3::ZERO,
+            ground: None,
             boxes: [OriginBox::EMPTY; 2 * PACKETS],
             asked: [0; PACKETS],
             open: [0; PACKETS],
@@ -96,20 +147,55 @@ impl Bundle {
     /// Takes over queries; those that are not rays to this light are not asked. `false` if none is, or if
     /// coordinates are so large or small that products of them could over- or underflow.
     #[inline(always)]
-    pub fn fill(&mut self, source: &Source, queries: &[ShadowQuery]) -> bool {
+    pub fn fill<L: Lanes>(&mut self, source: &Source, queries: &Chosen<'_>) -> bool {
         self.open = [0; PACKETS];
-        let Some(first) = queries.iter().position(|query| source.sends(&query.ray)) else {
-            return false;
-        };
-        let packets = queries.len().div_ceil(PACKET);
-        let mut origin = queries[first].ray.origin;
-        for place in 0..packets * PACKET {
-            if place < queries.len() && source.sends(&queries[place].ray) {
-                origin = queries[place].ray.origin;
-                self.open[place / PACKET] |= 1 << (place % PACKET);
+        let packets = queries.count().div_ceil(PACKET);
+        let (mut first, mut stray) = (None, 0u16);
+        for packet in 0..packets {
+            let mut asked = 0;
+            for start in [0, WIDTH] {
+                let place = packet * PACKET + start;
+                let rays = queries.rays(place);
+                let mut lane = 0;
+                while lane < WIDTH {
+                    let eight = L::rays(&rays, lane);
+                    asked |= source.sends::<L>(&eight) << (start + lane);
+                    for (origins, coordinates) in self.origins.iter_mut().zip(eight) {
+                        coordinates.store_to(&mut origins[packet], start + lane);
+                    }
+                    lane += L::COUNT;
+                }
             }
-            for axis in 0..3 {
-                self.origins[axis][place] = origin[axis];
+            let present = queries.count() - packet * PACKET;
+            if present < PACKET {
+                asked &= (1 << present) - 1;
+            }
+            self.open[packet] = asked as u16;
+            if asked != u32::from(u16::MAX) {
+                stray |= 1 << packet;
+            }
+            if asked != 0 && first.is_none() {
+                first = Some((packet, asked.trailing_zeros() as usize));
+            }
+        }
+        let Some(first) = first else { return false };
+        let mut origin = [0.0; 3];
+        for (axis, origin) in origin.iter_mut().enumerate() {
+            *origin = self.origins[axis][first.0][first.1];
+        }
+        for packet in 0..packets {
+            if stray & (1 << packet) == 0 {
+                continue;
+            }
+            for lane in 0..PACKET {
+                for (axis, origin) in origin.iter_mut().enumerate() {
+                    let value = &mut self.origins[axis][packet][lane];
+                    if self.open[packet] & (1 << lane) != 0 {
+                        *origin = *value;
+                    } else {
+                        *value = *origin;
+                    }
+                }
             }
         }
         self.boxes = [OriginBox::EMPTY; 2 * PACKETS];
@@ -117,14 +203,13 @@ impl Bundle {
         for packet in 0..packets {
             let mut around = OriginBox::EMPTY;
             for axis in 0..3 {
-                let values = &self.origins[axis][packet * PACKET..(packet + 1) * PACKET];
-                (around.low[axis], around.high[axis]) = range(values);
+                let values = L::Sixteen::load(&self.origins[axis][packet]);
+                (around.low[axis], around.high[axis]) = (values.least(), values.greatest());
             }
             low = low.min(around.low);
             high = high.max(around.high);
             self.boxes[PACKETS + packet] = around;
         }
-        self.centre = 0.5 * low + 0.5 * high;
         let light = match *source {
             Source::Point(light) => light,
             Source::Direction(_) => Vec3::ZERO,
@@ -133,9 +218,16 @@ impl Bundle {
         if !MAGNITUDES.contains(&self.largest) {
             return false;
         }
+        if !self.ground.is_some_and(|ground| ground.holds(low, high)) {
+            self.ground = None;
+        }
+        let around = || Ground::around(source, low, high, self.largest);
+        self.centre = self.ground.get_or_insert_with(around).centre;
         for axis in 0..3 {
-            for value in &mut self.origins[axis][..packets * PACKET] {
-                *value -= self.centre[axis];
+            for values in &mut self.origins[axis][..packets] {
+                for value in values {
+                    *value -= self.centre[axis];
+                }
             }
         }
         for packet in 0..packets {
@@ -151,10 +243,9 @@ impl Bundle {
         true
     }
 
-    /// Whether the origins do not stay together: packets are hardly smaller than the bundle, and far larger
-    /// than clusters are.
+    /// The mean size of packets, in units of `cluster`, and as a part of the bundle's.
     #[inline(always)]
-    pub fn is_spread(&self, cluster: f32) -> bool {
+    pub fn spread(&self, cluster: f32) -> [f32; 2] {
         let (mut sum, mut count) = (0.0, 0.0);
         for (around, &asked) in self.boxes[PACKETS..].iter().zip(&self.asked) {
             if asked != 0 {
@@ -164,7 +255,7 @@ impl Bundle {
         }
         let whole = (self.boxes[1].high - self.boxes[1].low).max_element();
         let packet = sum / count;
-        packet > SPREAD_WHOLE * whole && packet > SPREAD_CLUSTERS * cluster
+        [packet / cluster, packet / whole]
     }
 
     /// Whether anything in a part is open.
@@ -174,30 +265,15 @@ impl Bundle {
         self.open[first..last].iter().any(|&open| open != 0)
     }
 
-    /// The centre, exactly.
-    pub fn centre(&self) -> DVec3 {
-        self.centre.as_dvec3()
-    }
-}
-
-/// The least and the greatest of a packet's values. Halved again and again, so that it is done in vectors.
-#[inline(always)]
-fn range(values: &[f32]) -> (f32, f32) {
-    let mut low = [0.0; PACKET];
-    let mut high = [0.0; PACKET];
-    low.copy_from_slice(values);
-    high.copy_from_slice(values);
-    let mut half = PACKET / 2;
-    while half > 0 {
-        for lane in 0..half {
-            let (a, b) = (low[lane], low[lane + half]);
-            low[lane] = if a < b { a } else { b };
-            let (a, b) = (high[lane], high[lane + half]);
-            high[lane] = if a > b { a } else { b };
+    /// Notes what is settled, at the places of the queries.
+    pub fn tell(&self, places: &[u32], settled: &mut [Option<bool>]) {
+        for (index, &place) in places.iter().enumerate() {
+            let (packet, bit) = (index / PACKET, 1 << (index % PACKET));
+            if self.asked[packet] & bit != 0 {
+                settled[place as usize] = Some(self.open[packet] & bit == 0);
+            }
         }
-        half /= 2;
     }
-    (low[0], high[0])
 }
 
 /// The packets of a part of the heap.

@@ -6,8 +6,9 @@
 //! A shaft with nothing in it proves them lit, all at once. Nothing is prepared a light, so many lights cost no
 //! more than few.
 //!
-//! Wins where neighbouring queries start near each other, the more samples the better. Where they do not, parts of a bundle
-//! go on by themselves, in the end ray by ray.
+//! Wins where neighbouring queries start near each other, the more samples the better. Bundles that do not stay together,
+//! as those that mirrors see, are put together anew by place (`order`); where that does not help, parts of a bundle go
+//! on by themselves, in the end ray by ray.
 //!
 //! With a light buffer behind it, bundles that do not stay together are left to that: `shaft+light-buffer`.
 //!
@@ -19,20 +20,27 @@
 
 mod bundle;
 mod frustum;
+mod order;
 mod planes;
 mod rays;
 mod walk;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use bundle::{BUNDLE, PACKET, Source};
-use walk::{Around, Walker};
+use bundle::{BUNDLE, Chosen, PACKET, Source};
+use walk::{Apart, Around, Outcome, Walker};
 
 use super::stock::Stock;
 use super::{ShadowQuery, Verdict, VerdictKind};
 use crate::geometry::Triangles;
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally};
+
+/// Bundles that are apart like this are put together anew, by place.
+const SORTED: Apart = Apart { clusters: 0.5, whole: 0.0 };
+
+/// And these are left to a light buffer: shafts that wide are full of clusters.
+const PASSED_ON: Apart = Apart { clusters: 16.0, whole: 0.4 };
 
 /// Shafts to the lights of a scene.
 pub(super) struct Shafts {
@@ -42,6 +50,8 @@ pub(super) struct Shafts {
     clusters: Option<Arc<Clusters>>,
     /// Bytes of them, if nobody else counts them.
     bytes: usize,
+    /// Shafts among the transparent triangles, if there are any.
+    glass: Option<Box<Self>>,
     /// Whether bundles that do not stay together are left to a light buffer.
     leaves_spread: bool,
     arithmetic: Arithmetic,
@@ -52,13 +62,28 @@ pub(super) struct Shafts {
 impl Shafts {
     /// Groups the triangles; there is nothing to prepare for lights.
     pub fn new(stock: &Stock<'_>) -> Self {
-        let (scene, (clusters, bytes)) = (stock.scene, stock.clusters());
+        let (clusters, bytes) = stock.clusters();
+        let glass = stock.glass().map(|(clusters, bytes)| {
+            Box::new(Self::among(stock, Some(clusters), bytes, false, None))
+        });
+        let leaves_spread = stock.verdicts.contains(VerdictKind::LightBuffer);
+        Self::among(stock, clusters, bytes, leaves_spread, glass)
+    }
+
+    fn among(
+        stock: &Stock<'_>,
+        clusters: Option<Arc<Clusters>>,
+        bytes: usize,
+        leaves_spread: bool,
+        glass: Option<Box<Self>>,
+    ) -> Self {
         Self {
-            triangles: scene.triangles.clone(),
-            sources: scene.lights.iter().map(Source::new).collect(),
+            triangles: stock.scene.triangles.clone(),
+            sources: stock.scene.lights.iter().map(Source::new).collect(),
             clusters,
             bytes,
-            leaves_spread: stock.verdicts.contains(VerdictKind::LightBuffer),
+            glass,
+            leaves_spread,
             arithmetic: Arithmetic::of_this_cpu(),
             idle: Mutex::new(Vec::new()),
         }
@@ -80,27 +105,46 @@ impl Verdict for Shafts {
     ) {
         let Some(clusters) = &self.clusters else { return };
         let mut walker = self.walker();
-        for (queries, settled) in queries.chunks(BUNDLE).zip(settled.chunks_mut(BUNDLE)) {
-            let leaves_spread = self.leaves_spread;
-            let triangles = &self.triangles;
-            let around = Around { clusters, triangles, queries, leaves_spread };
+        walker.begin();
+        let mut orders = std::mem::take(&mut walker.orders);
+        let [all, apart] = &mut orders;
+        all.places.clear();
+        all.places.extend(0..queries.len() as u32);
+        apart.places.clear();
+        // A bundle by itself gains nothing from being sorted.
+        let leaves = (queries.len() > 4 * PACKET).then_some(SORTED);
+        let mut walk = |places: &[u32], leaves| {
+            let queries = Chosen::new(queries, places);
+            let around = Around { clusters, triangles: &self.triangles, queries, leaves };
             let source = &self.sources[light];
             let walk = Walk { walker: &mut walker, source, around, tally };
-            if !self.arithmetic.run(walk) {
-                continue;
+            let outcome = self.arithmetic.run(walk);
+            if outcome == Outcome::Settled {
+                walker.bundle.tell(places, settled);
             }
-            for (index, settled) in settled.iter_mut().enumerate() {
-                let (packet, bit) = (index / PACKET, 1 << (index % PACKET));
-                if walker.bundle.asked[packet] & bit != 0 {
-                    *settled = Some(walker.bundle.open[packet] & bit == 0);
-                }
+            outcome
+        };
+        for places in all.places.chunks(BUNDLE) {
+            if walk(places, leaves) == Outcome::Left {
+                apart.places.extend(places);
             }
         }
+        if !apart.places.is_empty() {
+            apart.by_place(queries);
+        }
+        for places in apart.places.chunks(BUNDLE) {
+            walk(places, self.leaves_spread.then_some(PASSED_ON));
+        }
+        walker.orders = orders;
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(walker);
     }
 
+    fn glass(&self) -> Option<&dyn Verdict> {
+        self.glass.as_deref().map(|glass| glass as &dyn Verdict)
+    }
+
     fn memory(&self) -> usize {
-        self.bytes
+        self.bytes + self.glass.as_ref().map_or(0, |glass| glass.bytes)
     }
 
     fn notes(&self) -> Vec<String> {
@@ -119,10 +163,10 @@ struct Walk<'a, 'b> {
 }
 
 impl LanesJob for Walk<'_, '_> {
-    type Answer = bool;
+    type Answer = Outcome;
 
     #[inline(always)]
-    fn run<L: Lanes>(self) -> bool {
+    fn run<L: Lanes>(self) -> Outcome {
         self.walker.walk::<L>(self.source, &self.around, self.tally)
     }
 }

@@ -9,8 +9,8 @@
 //! have the sign of N·a (their sum with N·a says that the volumes agree: a×b + b×c + c×a = N). For a direction
 //! d the edges are (P − A)·((a−b)×d), the plane −N·(P − A), and the sign is that of N·d.
 //!
-//! **Rounding.** Constants are computed in f64, at the bundle's centre C, and origins are relative to C, p =
-//! fl(P − C). With u = 2⁻²⁴, h the bundle's half box, and n the plane's normal, evaluation in f32 errs by at
+//! **Rounding.** Constants are computed in f64, at the centre C of the ground, and origins are relative to C, p =
+//! fl(P − C). With u = 2⁻²⁴, h the ground's half box, and n the plane's normal, evaluation in f32 errs by at
 //! most 8u (|n|·h + |n·C + c|): six roundings of each product (that of p, of n, and four of the sum, unfused),
 //! five of the constant. The rays' direction is fl(L − P), off by ρ with |ρ| ≤ u|q|: that moves an
 //! edge's volume by q·((a−b)×ρ), at most 2u E |q|₁ |q|∞ with E the longest coordinate of an edge, and the end of the ray
@@ -19,9 +19,10 @@
 //! Each plane is divided by its bound: beyond 1 it is certain, below −1 too, and what lies between is open and
 //! left to the exact test.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::bundle::{OriginBox, Source};
+use crate::geometry::lanes::{self, Lanes};
 use crate::occlusion::{Cluster, WIDTH};
 
 /// u.
@@ -33,6 +34,13 @@ const DOUBLE: f64 = 1.0 / (1u64 << 46) as f64;
 /// Nothing that is computed in f32 vanishes beside this: products underflow below 2⁻¹²⁶.
 const LEAST: f64 = 1e-30;
 
+/// Of the first bundle, so much larger is the ground for those after it: planes are kept for all of them. Error bounds
+/// grow by as much, and with them the few queries that are left to the exact test.
+const ROOM: f32 = 4.0;
+
+/// Half the box of a bundle counts as at least this part of the largest coordinate.
+const LEAST_HALF: f32 = 1.0 / (1 << 24) as f32;
+
 /// A value of each of eight triangles.
 type Eight = [f64; WIDTH];
 
@@ -43,19 +51,37 @@ pub(super) const OWN: usize = 3;
 pub(super) struct Planes {
     /// Normal by plane, axis, triangle.
     pub normals: [[[f32; WIDTH]; 3]; 4],
-    /// Value at the bundle's centre.
+    /// Value at the ground's centre.
     pub values: [[f32; WIDTH]; 4],
     /// Triangles of which it is not certain on which side the light is: a bit each.
     pub unsided: u32,
 }
 
-/// What planes need to know of a bundle.
-#[derive(Clone, Copy, Debug)]
+/// What planes need to know of the bundles that they serve.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ground {
     pub source: Source,
-    pub centre: DVec3,
-    /// Half the box of the origins.
-    pub half: DVec3,
+    /// Origins are relative to this.
+    pub centre: Vec3,
+    /// Half the box that all origins are in.
+    pub half: Vec3,
+}
+
+impl Ground {
+    /// Ground for a bundle in this box, with room around it for the next ones.
+    pub fn around(source: &Source, low: Vec3, high: Vec3, largest: f32) -> Self {
+        let half = ROOM * (0.5 * high - 0.5 * low);
+        // Origins that coincide must not make planes that are divided by nothing.
+        let half = half.max(Vec3::splat(LEAST_HALF * largest));
+        Self { source: *source, centre: 0.5 * low + 0.5 * high, half }
+    }
+
+    /// Whether a box of origins is on it.
+    #[inline(always)]
+    pub fn holds(&self, low: Vec3, high: Vec3) -> bool {
+        let reach = (low - self.centre).abs().max((high - self.centre).abs());
+        reach.cmple(self.half).all()
+    }
 }
 
 #[inline(always)]
@@ -143,6 +169,7 @@ impl Planes {
     #[inline(always)]
     pub fn set(&mut self, ground: &Ground, cluster: &Cluster) {
         let Ground { source, centre, half } = *ground;
+        let (centre, half) = (centre.as_dvec3(), half.as_dvec3());
         let (light, to_centre, span) = match source {
             Source::Point(light) => {
                 let light = light.as_dvec3();
@@ -247,33 +274,28 @@ impl Planes {
 
     /// Triangles that may block a ray from the box: a bit each.
     #[inline(always)]
-    pub fn candidates(&self, origins: &OriginBox) -> u32 {
-        let middle = 0.5 * (origins.low + origins.high);
-        let half = 0.5 * (origins.high - origins.low);
-        let mut beyond = [false; WIDTH];
-        let mut before = [false; WIDTH];
-        for plane in 0..4 {
-            let [x, y, z] = &self.normals[plane];
-            for lane in 0..WIDTH {
-                let value = self.values[plane][lane]
-                    + x[lane] * middle.x
-                    + y[lane] * middle.y
-                    + z[lane] * middle.z;
-                let reach =
-                    x[lane].abs() * half.x + y[lane].abs() * half.y + z[lane].abs() * half.z;
+    pub fn candidates<L: Lanes>(&self, origins: &OriginBox) -> u32 {
+        let middle = lanes::splat::<L>(0.5 * (origins.low + origins.high));
+        let half = lanes::splat::<L>(0.5 * (origins.high - origins.low));
+        let (least, slope) = (L::splat(1.001), L::splat(1e-5));
+        let (mut beyond, mut before) = (0, 0);
+        let mut first = 0;
+        while first < WIDTH {
+            for plane in 0..4 {
+                let [x, y, z] = &self.normals[plane];
+                let normal = [L::load(x, first), L::load(y, first), L::load(z, first)];
+                let size = [normal[0].abs(), normal[1].abs(), normal[2].abs()];
+                let value = L::load(&self.values[plane], first).add(lanes::dot(normal, middle));
+                let reach = lanes::dot(size, half);
                 // A little more than 1, for the rounding of these sums.
-                let margin = 1.001 + 1e-5 * (reach + value.abs());
-                beyond[lane] |= value + reach < -margin;
-                before[lane] |= value - reach > margin;
+                let margin = slope.mul_add(reach.add(value.abs()), least);
+                beyond |= L::bits(value.add(reach).add(margin).less(L::splat(0.0))) << first;
+                before |= L::bits(margin.less(value.sub(reach))) << first;
             }
+            first += L::COUNT;
         }
-        let mut bits = 0;
-        for lane in 0..WIDTH {
-            // Without a side, signs that differ say that the line misses.
-            let unsided = self.unsided & (1 << lane) != 0;
-            let missed = beyond[lane] && (before[lane] || !unsided);
-            bits |= u32::from(!missed) << lane;
-        }
-        bits
+        // Without a side, signs that differ say that the line misses.
+        let missed = beyond & (before | !self.unsided);
+        !missed & ((1 << WIDTH) - 1)
     }
 }

@@ -1,10 +1,9 @@
 //! The rays of a packet, for tests of one box by all of them: where a shaft is wider than a box.
 
-use super::bundle::PACKET;
+use super::bundle::{Chosen, PACKET};
 use super::frustum::{PAD, inverse};
-use crate::geometry::lanes::Lanes;
+use crate::geometry::lanes::Sixteen;
 use crate::occlusion::Node;
-use crate::shadow::ShadowQuery;
 
 /// The rays of a packet, for tests of one box.
 #[derive(Clone, Copy)]
@@ -19,15 +18,16 @@ impl PacketRays {
     pub const EMPTY: Self =
         Self { origins: [[0.0; PACKET]; 3], inverses: [[0.0; PACKET]; 3], pad: 0.0, end: 0.0 };
 
-    /// Takes over the rays of up to a packet of queries.
+    /// Takes over the rays of up to a packet of queries, from `first` on.
     #[inline(always)]
-    pub fn set(&mut self, queries: &[ShadowQuery], largest: f32) {
+    pub fn set(&mut self, queries: &Chosen, first: usize, largest: f32) {
         self.pad = PAD * largest;
-        self.end = queries[0].ray.end;
-        for (lane, query) in queries.iter().enumerate() {
+        self.end = queries.ray(first).end;
+        for lane in 0..PACKET.min(queries.count() - first) {
+            let ray = queries.ray(first + lane);
             for axis in 0..3 {
-                self.origins[axis][lane] = query.ray.origin[axis];
-                self.inverses[axis][lane] = query.ray.direction[axis];
+                self.origins[axis][lane] = ray.origin[axis];
+                self.inverses[axis][lane] = ray.direction[axis];
             }
         }
         for inverses in &mut self.inverses {
@@ -39,22 +39,16 @@ impl PacketRays {
 
     /// The rays that meet a box of a node: a bit each.
     #[inline(always)]
-    pub fn meet<L: Lanes>(&self, node: &Node, slot: usize) -> u32 {
-        let mut met = 0;
-        let mut first = 0;
-        while first < PACKET {
-            let (mut enter, mut leave) = (L::splat(0.0), L::splat(self.end));
-            for axis in 0..3 {
-                let origin = L::load_from(&self.origins[axis], first);
-                let inverse = L::load_from(&self.inverses[axis], first);
-                let low = L::splat(node.low[axis][slot] - self.pad).sub(origin).mul(inverse);
-                let high = L::splat(node.high[axis][slot] + self.pad).sub(origin).mul(inverse);
-                enter = enter.max(low.min(high));
-                leave = leave.min(low.max(high));
-            }
-            met |= L::bits(enter.less_equal(leave)) << first;
-            first += L::COUNT;
+    pub fn meet<S: Sixteen>(&self, node: &Node, slot: usize) -> u16 {
+        let (mut enter, mut leave) = (S::splat(0.0), S::splat(self.end));
+        for axis in 0..3 {
+            let origin = S::load(&self.origins[axis]);
+            let inverse = S::load(&self.inverses[axis]);
+            let low = S::splat(node.low[axis][slot] - self.pad).sub(origin).mul(inverse);
+            let high = S::splat(node.high[axis][slot] + self.pad).sub(origin).mul(inverse);
+            enter = enter.max(low.min(high));
+            leave = leave.min(low.max(high));
         }
-        met
+        enter.less_equal(leave)
     }
 }

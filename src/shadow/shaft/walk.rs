@@ -5,18 +5,16 @@
 //! apart, and its rays go on one by one. So rays that stay together share every step, and those that do not cost
 //! what they cost alone.
 
-use glam::DVec3;
-
-use super::bundle::{Bundle, PACKET, PACKETS, Source, packets_of};
+use super::bundle::{Bundle, Chosen, PACKET, PACKETS, Source, packets_of};
 use super::frustum::{Met, Shaft};
+use super::order::Order;
 use super::planes::{Ground, Planes};
 use super::rays::PacketRays;
 use crate::exact::{Exact, certified};
 use crate::geometry::intersect::RayLanes;
-use crate::geometry::lanes::Lanes;
+use crate::geometry::lanes::{Lanes, Sixteen};
 use crate::geometry::{TriangleId, Triangles};
 use crate::occlusion::{Child, Clusters, Node, Tally, WIDTH};
-use crate::shadow::ShadowQuery;
 
 /// What is still to be visited: a part of the bundle, and a child.
 #[derive(Clone, Copy)]
@@ -27,11 +25,8 @@ struct Step {
     child: Child,
 }
 
-/// Half the box of a bundle counts as at least this part of the largest coordinate.
-const LEAST_HALF: f64 = 1.0 / (1u64 << 24) as f64;
-
-/// Clusters whose planes are kept: parts of a bundle come to the same ones. 8 KiB.
-const KEPT: usize = 16;
+/// Clusters whose planes are kept: parts of a bundle come to the same ones, and so do bundles in a row. 33 KiB.
+const KEPT: usize = 64;
 
 /// Fewer rays of a packet than this go on one by one.
 const COMPANY: u32 = 8;
@@ -48,18 +43,41 @@ pub(super) struct Walker {
     /// Planes of clusters that were tested of late, and which clusters.
     planes: [Planes; KEPT],
     planes_of: [u32; KEPT],
+    /// The ground that they are for.
+    planes_for: Option<Ground>,
     steps: Vec<Step>,
     /// The same for a ray that goes on alone.
     rest: Vec<Child>,
+    /// Lent to whoever hands out bundles: all queries, and those that are sorted.
+    pub orders: [Order; 2],
 }
 
 /// What stays the same for a bundle.
 pub(super) struct Around<'a> {
     pub clusters: &'a Clusters,
     pub triangles: &'a Triangles,
-    pub queries: &'a [ShadowQuery],
-    /// Whether a bundle that does not stay together is passed on.
-    pub leaves_spread: bool,
+    pub queries: Chosen<'a>,
+    /// Whether a bundle that does not stay together is left.
+    pub leaves: Option<Apart>,
+}
+
+/// When a bundle does not stay together: packets are on average larger than so many clusters, and than such a part
+/// of the bundle.
+#[derive(Clone, Copy)]
+pub(super) struct Apart {
+    pub clusters: f32,
+    pub whole: f32,
+}
+
+/// What came of a bundle.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outcome {
+    /// Queries to this light that stay open are lit.
+    Settled,
+    /// It does not stay together.
+    Left,
+    /// None is to this light.
+    Strange,
 }
 
 const NOBODY: u32 = u32::MAX;
@@ -74,35 +92,51 @@ impl Walker {
             rays_known: 0,
             planes: [const { Planes::EMPTY }; KEPT],
             planes_of: [NOBODY; KEPT],
+            planes_for: None,
             steps: Vec::new(),
             rest: Vec::new(),
+            orders: [Order::default(), Order::default()],
         }
     }
 
-    /// Settles all queries to this light: those that stay open are lit. `false` if none is to this light.
+    /// From now on, bundles may be to another light.
+    pub fn begin(&mut self) {
+        self.bundle.ground = None;
+    }
+
+    /// Settles all queries to this light.
     #[inline(always)]
-    pub fn walk<L: Lanes>(&mut self, source: &Source, around: &Around, tally: &mut Tally) -> bool {
-        if !self.bundle.fill(source, around.queries)
-            || (around.leaves_spread && self.bundle.is_spread(around.clusters.typical_extent()))
-        {
-            return false;
+    pub fn walk<L: Lanes>(
+        &mut self,
+        source: &Source,
+        around: &Around,
+        tally: &mut Tally,
+    ) -> Outcome {
+        if !self.bundle.fill::<L>(source, &around.queries) {
+            return Outcome::Strange;
         }
-        let origins = &self.bundle.boxes[1];
-        // Origins that coincide must not make planes that are divided by nothing.
-        let least = f64::from(self.bundle.largest) * LEAST_HALF;
-        let half = origins.low.abs().max(origins.high.abs()).as_dvec3().max(DVec3::splat(least));
-        let ground = &Ground { source: *source, centre: self.bundle.centre(), half };
+        let Some(ground) = self.bundle.ground else { return Outcome::Strange };
+        let ground = &ground;
+        if self.planes_for != Some(*ground) {
+            self.planes_for = Some(*ground);
+            self.planes_of = [NOBODY; KEPT];
+        }
+        if let Some(apart) = around.leaves {
+            let [clusters, whole] = self.bundle.spread(around.clusters.typical_extent());
+            if clusters > apart.clusters && whole > apart.whole {
+                return Outcome::Left;
+            }
+        }
         self.known = 0;
         self.rays_known = 0;
-        self.planes_of = [NOBODY; KEPT];
         self.steps.clear();
         if around.clusters.nodes().is_empty() {
-            return true;
+            return Outcome::Settled;
         }
-        if around.queries.len() < COMPANY as usize {
+        if around.queries.count() < COMPANY as usize {
             let asked = self.bundle.open[0];
             self.go_alone::<L>(0, asked, Child::Node(0), around, tally);
-            return true;
+            return Outcome::Settled;
         }
         self.steps.push(Step { part: 1, met: u16::MAX, child: Child::Node(0) });
         while let Some(step) = self.steps.pop() {
@@ -127,7 +161,7 @@ impl Walker {
                 }
             }
         }
-        true
+        Outcome::Settled
     }
 
     /// Makes sure that the shaft of a part is known.
@@ -146,9 +180,7 @@ impl Walker {
     fn rays_of(&mut self, packet: usize, around: &Around) -> &PacketRays {
         if self.rays_known & (1 << packet) == 0 {
             self.rays_known |= 1 << packet;
-            let queries = &around.queries[packet * PACKET..];
-            let queries = &queries[..queries.len().min(PACKET)];
-            self.rays[packet].set(queries, self.bundle.largest);
+            self.rays[packet].set(&around.queries, packet * PACKET, self.bundle.largest);
         }
         &self.rays[packet]
     }
@@ -189,7 +221,7 @@ impl Walker {
             let child = node.child(slot);
             // A shaft that is no wider than the box meets it with most of its rays.
             let rays = if found.narrower & (1 << slot) != 0 {
-                open & self.rays_of(packet, around).meet::<L>(node, slot) as u16
+                open & self.rays_of(packet, around).meet::<L::Sixteen>(node, slot)
             } else {
                 open
             };
@@ -214,8 +246,7 @@ impl Walker {
         while rays != 0 {
             let lane = rays.trailing_zeros() as usize;
             rays &= rays - 1;
-            let query = &around.queries[packet * PACKET + lane];
-            let ray = &query.ray;
+            let ray = around.queries.ray(packet * PACKET + lane);
             let lanes = RayLanes::<L>::new(ray);
             let shaft = Shaft::of_ray(ray, self.bundle.largest);
             self.rest.clear();
@@ -264,20 +295,20 @@ impl Walker {
         }
 
         let mut candidates =
-            self.planes[kept].candidates(&self.bundle.boxes[usize::from(step.part)]);
+            self.planes[kept].candidates::<L>(&self.bundle.boxes[usize::from(step.part)]);
         while candidates != 0 {
             let lane = candidates.trailing_zeros() as usize;
             candidates &= candidates - 1;
             if lane > 0 && cluster.ids()[lane] == cluster.ids()[lane - 1] {
                 continue;
             }
-            self.cast::<L>(step, (kept, lane), cluster.ids()[lane], around, tally);
+            self.cast::<L::Sixteen>(step, (kept, lane), cluster.ids()[lane], around, tally);
         }
     }
 
     /// Casts the shadow of one triangle on a part of the bundle.
     #[inline(always)]
-    fn cast<L: Lanes>(
+    fn cast<S: Sixteen>(
         &mut self,
         step: Step,
         (kept, lane): (usize, usize),
@@ -287,41 +318,31 @@ impl Walker {
     ) {
         let known = &self.planes[kept];
         let unsided = known.unsided & (1 << lane) != 0;
-        let zero = L::splat(0.0);
-        let mut planes = [[zero; 4]; 4];
+        let mut planes = [[S::splat(0.0); 4]; 4];
         for (number, plane) in planes.iter_mut().enumerate() {
             let [x, y, z] = &known.normals[number];
             let value = &known.values[number];
             *plane =
-                [L::splat(x[lane]), L::splat(y[lane]), L::splat(z[lane]), L::splat(value[lane])];
+                [S::splat(x[lane]), S::splat(y[lane]), S::splat(z[lane]), S::splat(value[lane])];
         }
-        let (one, minus_one) = (L::splat(1.0), L::splat(-1.0));
+        let (one, minus_one) = (S::splat(1.0), S::splat(-1.0));
         let (first, last) = packets_of(usize::from(step.part));
         for packet in first..last {
             let open = self.bundle.open[packet] & step.met;
             if open == 0 {
                 continue;
             }
-            let (mut certain, mut missed) = (0u32, 0u32);
-            let mut offset = 0;
-            while offset < PACKET {
-                let start = packet * PACKET + offset;
-                let [x, y, z] = &self.bundle.origins;
-                let (x, y, z) =
-                    (L::load_from(x, start), L::load_from(y, start), L::load_from(z, start));
-                let mut least = L::splat(f32::INFINITY);
-                for [nx, ny, nz, value] in planes {
-                    least = least.min(nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, value))));
-                }
-                certain |= L::bits(one.less(least)) << offset;
-                missed |= L::bits(least.less(minus_one)) << offset;
-                offset += L::COUNT;
+            let [x, y, z] = &self.bundle.origins;
+            let (x, y, z) = (S::load(&x[packet]), S::load(&y[packet]), S::load(&z[packet]));
+            let mut least = S::splat(f32::INFINITY);
+            for [nx, ny, nz, value] in planes {
+                least = least.min(nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, value))));
             }
+            let (mut certain, mut missed) = (one.less(least), least.less(minus_one));
             tally.triangle_tests += u64::from(open.count_ones());
             if unsided {
                 (certain, missed) = (0, 0);
             }
-            let open = u32::from(open);
             let mut doubtful = open & !(certain | missed);
             let mut blocked = open & certain;
             while doubtful != 0 {
@@ -331,14 +352,13 @@ impl Walker {
                     blocked |= 1 << query;
                 }
             }
-            self.bundle.open[packet] &= !(blocked as u16);
+            self.bundle.open[packet] &= !blocked;
         }
     }
 
     /// Decides one triangle for one query.
     #[cold]
     fn settle(&self, query: usize, id: TriangleId, around: &Around) -> bool {
-        let query = &around.queries[query];
-        certified::blocks(&query.ray, &around.triangles.get(id))
+        certified::blocks(around.queries.ray(query), &around.triangles.get(id))
     }
 }
