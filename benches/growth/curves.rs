@@ -12,9 +12,6 @@ use umbra::shadow::{Auto, Combination, Method, prepare};
 
 use super::contest::{Answers, Contender, Costs, Queries, measure};
 
-/// Rounds of a point.
-const ROUNDS: usize = 3;
-
 /// Seconds that a contender may take for a round of a point; then it is left out of greater ones.
 const PATIENCE: f64 = 20.0;
 
@@ -23,7 +20,8 @@ pub struct Curve {
     pub name: &'static str,
     /// What the horizontal axis shows.
     pub axis: &'static str,
-    pub measure: fn() -> Vec<Point>,
+    /// Measures it, so many rounds a point.
+    pub measure: fn(usize) -> Vec<Point>,
 }
 
 pub const ALL: [Curve; 4] = [
@@ -111,11 +109,17 @@ impl Engines {
     }
 }
 
-/// Those who have been too slow so far.
-#[derive(Default)]
-struct Out(Vec<&'static str>);
+/// Rounds of each point, and those who have been too slow so far.
+struct Out {
+    rounds: usize,
+    slow: Vec<&'static str>,
+}
 
 impl Out {
+    fn new(rounds: usize) -> Self {
+        Self { rounds, slow: Vec::new() }
+    }
+
     /// Measures a point with those who are still in.
     fn point(
         &mut self,
@@ -126,8 +130,8 @@ impl Out {
         threads: usize,
     ) -> Point {
         let queries = Queries::of(scene, &engines.embree.0, settings);
-        let contenders = engines.contenders(scene, &self.0);
-        let costs = measure(&contenders, &queries, ROUNDS, threads);
+        let contenders = engines.contenders(scene, &self.slow);
+        let costs = measure(&contenders, &queries, self.rounds, threads);
         let ours: Vec<usize> = costs
             .iter()
             .filter(|costs| !costs.name.starts_with("embree"))
@@ -146,7 +150,7 @@ impl Out {
             );
             if cost.first + cost.then > PATIENCE * 1e9 {
                 println!("*** {} is left out from here on: too slow ***", cost.name);
-                self.0.push(cost.name);
+                self.slow.push(cost.name);
             }
         }
         Point { scene: scene.name.clone(), x, queries: queries.count, costs }
@@ -158,12 +162,12 @@ fn settings(width: u32, height: u32, samples: u32) -> Settings {
 }
 
 /// Finer and finer tessellations, about threefold each.
-fn triangles() -> Vec<Point> {
+fn triangles(rounds: usize) -> Vec<Point> {
     const STEPS: [f64; 7] = [1e4, 3e4, 1e5, 3e5, 1e6, 3e6, 1e7];
     let mut points = Vec::new();
     for name in ["chair-room", "jittered-dense"] {
         let usual = builtin::triangle_count(name, 1.0).expect("it is built in") as f64;
-        let mut out = Out::default();
+        let mut out = Out::new(rounds);
         for wanted in STEPS {
             let made = builtin::draft_at(name, wanted / usual).and_then(|draft| draft.finish());
             let scene = match made {
@@ -174,16 +178,16 @@ fn triangles() -> Vec<Point> {
                 }
             };
             let engines = Engines::over(&scene, 1);
-            let settings = settings(160, 120, 1);
-            points.push(out.point(&scene, scene.triangles.len(), &engines, &settings, 1));
+            let (count, settings) = (scene.triangles.len(), settings(160, 120, 1));
+            points.push(out.point(&scene, count, &engines, &settings, 1));
         }
     }
     points
 }
 
 /// More and more lights under the ceiling of the chair room.
-fn lights() -> Vec<Point> {
-    let mut out = Out::default();
+fn lights(rounds: usize) -> Vec<Point> {
+    let mut out = Out::new(rounds);
     [1, 4, 16, 64, 256]
         .into_iter()
         .map(|count| {
@@ -219,12 +223,12 @@ fn lattice(own: &[Light], count: usize) -> Vec<Light> {
 }
 
 /// 1 to 64 samples a pixel.
-fn samples() -> Vec<Point> {
+fn samples(rounds: usize) -> Vec<Point> {
     let mut points = Vec::new();
     for name in ["chair-room", "jittered-sparse"] {
         let scene = builtin::draft(name).and_then(|draft| draft.finish().ok()).expect("built in");
         let engines = Engines::over(&scene, 1);
-        let mut out = Out::default();
+        let mut out = Out::new(rounds);
         for side in [1, 2, 4, 8] {
             let samples = (side * side) as usize;
             points.push(out.point(&scene, samples, &engines, &settings(96, 72, side), 1));
@@ -234,11 +238,11 @@ fn samples() -> Vec<Point> {
 }
 
 /// 1 thread to as many as there are processors, by the clock on the wall.
-fn threads() -> Vec<Point> {
+fn threads(rounds: usize) -> Vec<Point> {
     let scene = builtin::draft("chair-room").and_then(|draft| draft.finish().ok());
     let scene = scene.expect("it is built in");
     let all = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut out = Out::default();
+    let mut out = Out::new(rounds);
     let doubled = std::iter::successors(Some(1), |threads| Some(2 * threads));
     let mut steps: Vec<usize> = doubled.take_while(|&threads| threads < all).collect();
     steps.push(all);
