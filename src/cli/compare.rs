@@ -12,11 +12,9 @@ use super::options::{
 };
 use super::progress::{with_bar, with_rate};
 use crate::measure::compare::{CompareError, Report, compare};
-use crate::measure::contender::{Choice, Selection};
+use crate::measure::contender::Selection;
 use crate::measure::recording::Recording;
-use crate::occlusion::{Backend, Test};
 use crate::render::{Picture, Progress, Settings, write_picture};
-use crate::shadow::Combination;
 use crate::whole_file::write_whole;
 
 const DETAILS: &str = "\

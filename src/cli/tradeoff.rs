@@ -11,7 +11,6 @@ use super::options::{
 use super::progress::with_bar;
 use crate::measure::contender::{Choice, Contender, Selection};
 use crate::measure::tradeoff::{Conditions, Report, csv, measure, page, plot, table};
-use crate::occlusion::{Backend, Test};
 use crate::render::{Progress, Settings};
 use crate::shadow::{Combination, Method};
 use crate::whole_file::write_whole;
