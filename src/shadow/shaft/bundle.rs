@@ -9,6 +9,12 @@ use crate::occlusion::WIDTH;
 use crate::scene::Light;
 use crate::shadow::ShadowQuery;
 
+/// A bundle whose packets are on average larger than this part of it is not kept together by halving it.
+const SPREAD_WHOLE: f32 = 0.4;
+
+/// And one whose packets are so many times larger than clusters: shafts that wide are full of them.
+const SPREAD_CLUSTERS: f32 = 16.0;
+
 /// Largest coordinates of bundles that are answered here: products of four of them stay within f32.
 const MAGNITUDES: std::ops::Range<f32> = 1e-6..1e9;
 
@@ -243,9 +249,10 @@ impl Bundle {
         true
     }
 
-    /// The mean size of packets, in units of `cluster`, and as a part of the bundle's.
+    /// Whether the origins do not stay together: packets are hardly smaller than the bundle, and far larger
+    /// than clusters are.
     #[inline(always)]
-    pub fn spread(&self, cluster: f32) -> [f32; 2] {
+    pub fn is_spread(&self, cluster: f32) -> bool {
         let (mut sum, mut count) = (0.0, 0.0);
         for (around, &asked) in self.boxes[PACKETS..].iter().zip(&self.asked) {
             if asked != 0 {
@@ -255,7 +262,7 @@ impl Bundle {
         }
         let whole = (self.boxes[1].high - self.boxes[1].low).max_element();
         let packet = sum / count;
-        [packet / cluster, packet / whole]
+        packet > SPREAD_WHOLE * whole && packet > SPREAD_CLUSTERS * cluster
     }
 
     /// Whether anything in a part is open.

@@ -28,7 +28,8 @@ mod walk;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use bundle::{BUNDLE, Chosen, PACKET, Source};
-use walk::{Apart, Around, Outcome, Walker};
+use order::{SortByPlace, are_apart};
+use walk::{Around, Walker};
 
 use super::stock::Stock;
 use super::{ShadowQuery, Verdict, VerdictKind};
@@ -36,11 +37,11 @@ use crate::geometry::Triangles;
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally};
 
-/// Bundles that are apart like this are put together anew, by place.
-const SORTED: Apart = Apart { clusters: 0.5, whole: 0.0 };
+/// Bundles whose packets are larger than so many clusters are put together anew, by place.
+const APART: f32 = 0.3;
 
-/// And these are left to a light buffer: shafts that wide are full of clusters.
-const PASSED_ON: Apart = Apart { clusters: 16.0, whole: 0.4 };
+/// Fewer queries than this are not sorted.
+const WORTH_SORTING: usize = 4 * PACKET;
 
 /// Shafts to the lights of a scene.
 pub(super) struct Shafts {
@@ -106,36 +107,33 @@ impl Verdict for Shafts {
         let Some(clusters) = &self.clusters else { return };
         let mut walker = self.walker();
         walker.begin();
-        let mut orders = std::mem::take(&mut walker.orders);
-        let [all, apart] = &mut orders;
-        all.places.clear();
-        all.places.extend(0..queries.len() as u32);
+        let (mut all, mut apart) = std::mem::take(&mut walker.orders);
+        all.clear();
+        all.extend(0..queries.len() as u32);
         apart.places.clear();
-        // A bundle by itself gains nothing from being sorted.
-        let leaves = (queries.len() > 4 * PACKET).then_some(SORTED);
-        let mut walk = |places: &[u32], leaves| {
+        let mut walk = |places: &[u32], leaves_spread| {
             let queries = Chosen::new(queries, places);
-            let around = Around { clusters, triangles: &self.triangles, queries, leaves };
+            let around = Around { clusters, triangles: &self.triangles, queries, leaves_spread };
             let source = &self.sources[light];
-            let walk = Walk { walker: &mut walker, source, around, tally };
-            let outcome = self.arithmetic.run(walk);
-            if outcome == Outcome::Settled {
+            if self.arithmetic.run(Walk { walker: &mut walker, source, around, tally }) {
                 walker.bundle.tell(places, settled);
             }
-            outcome
         };
-        for places in all.places.chunks(BUNDLE) {
-            if walk(places, leaves) == Outcome::Left {
+        let size = APART * clusters.typical_extent();
+        for (places, queries) in all.chunks(BUNDLE).zip(queries.chunks(BUNDLE)) {
+            if are_apart(queries, size) {
                 apart.places.extend(places);
+            } else {
+                walk(places, false);
             }
         }
-        if !apart.places.is_empty() {
-            apart.by_place(queries);
+        if apart.places.len() > WORTH_SORTING {
+            self.arithmetic.run(SortByPlace { order: &mut apart, queries });
         }
         for places in apart.places.chunks(BUNDLE) {
-            walk(places, self.leaves_spread.then_some(PASSED_ON));
+            walk(places, self.leaves_spread);
         }
-        walker.orders = orders;
+        walker.orders = (all, apart);
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(walker);
     }
 
@@ -163,10 +161,10 @@ struct Walk<'a, 'b> {
 }
 
 impl LanesJob for Walk<'_, '_> {
-    type Answer = Outcome;
+    type Answer = bool;
 
     #[inline(always)]
-    fn run<L: Lanes>(self) -> Outcome {
+    fn run<L: Lanes>(self) -> bool {
         self.walker.walk::<L>(self.source, &self.around, self.tally)
     }
 }

@@ -49,7 +49,7 @@ pub(super) struct Walker {
     /// The same for a ray that goes on alone.
     rest: Vec<Child>,
     /// Lent to whoever hands out bundles: all queries, and those that are sorted.
-    pub orders: [Order; 2],
+    pub orders: (Vec<u32>, Order),
 }
 
 /// What stays the same for a bundle.
@@ -57,27 +57,8 @@ pub(super) struct Around<'a> {
     pub clusters: &'a Clusters,
     pub triangles: &'a Triangles,
     pub queries: Chosen<'a>,
-    /// Whether a bundle that does not stay together is left.
-    pub leaves: Option<Apart>,
-}
-
-/// When a bundle does not stay together: packets are on average larger than so many clusters, and than such a part
-/// of the bundle.
-#[derive(Clone, Copy)]
-pub(super) struct Apart {
-    pub clusters: f32,
-    pub whole: f32,
-}
-
-/// What came of a bundle.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Outcome {
-    /// Queries to this light that stay open are lit.
-    Settled,
-    /// It does not stay together.
-    Left,
-    /// None is to this light.
-    Strange,
+    /// Whether a bundle that does not stay together is passed on.
+    pub leaves_spread: bool,
 }
 
 const NOBODY: u32 = u32::MAX;
@@ -95,7 +76,7 @@ impl Walker {
             planes_for: None,
             steps: Vec::new(),
             rest: Vec::new(),
-            orders: [Order::default(), Order::default()],
+            orders: Default::default(),
         }
     }
 
@@ -104,39 +85,30 @@ impl Walker {
         self.bundle.ground = None;
     }
 
-    /// Settles all queries to this light.
+    /// Settles all queries to this light: those that stay open are lit. `false` if none is settled.
     #[inline(always)]
-    pub fn walk<L: Lanes>(
-        &mut self,
-        source: &Source,
-        around: &Around,
-        tally: &mut Tally,
-    ) -> Outcome {
-        if !self.bundle.fill::<L>(source, &around.queries) {
-            return Outcome::Strange;
+    pub fn walk<L: Lanes>(&mut self, source: &Source, around: &Around, tally: &mut Tally) -> bool {
+        if !self.bundle.fill::<L>(source, &around.queries)
+            || (around.leaves_spread && self.bundle.is_spread(around.clusters.typical_extent()))
+        {
+            return false;
         }
-        let Some(ground) = self.bundle.ground else { return Outcome::Strange };
+        let Some(ground) = self.bundle.ground else { return false };
         let ground = &ground;
         if self.planes_for != Some(*ground) {
             self.planes_for = Some(*ground);
             self.planes_of = [NOBODY; KEPT];
         }
-        if let Some(apart) = around.leaves {
-            let [clusters, whole] = self.bundle.spread(around.clusters.typical_extent());
-            if clusters > apart.clusters && whole > apart.whole {
-                return Outcome::Left;
-            }
-        }
         self.known = 0;
         self.rays_known = 0;
         self.steps.clear();
         if around.clusters.nodes().is_empty() {
-            return Outcome::Settled;
+            return true;
         }
         if around.queries.count() < COMPANY as usize {
             let asked = self.bundle.open[0];
             self.go_alone::<L>(0, asked, Child::Node(0), around, tally);
-            return Outcome::Settled;
+            return true;
         }
         self.steps.push(Step { part: 1, met: u16::MAX, child: Child::Node(0) });
         while let Some(step) = self.steps.pop() {
@@ -161,7 +133,7 @@ impl Walker {
                 }
             }
         }
-        Outcome::Settled
+        true
     }
 
     /// Makes sure that the shaft of a part is known.
