@@ -73,10 +73,18 @@ fn embrees(scene: &Scene) -> Vec<(String, Embree, f64)> {
 }
 
 /// One of umbra's ways, made ready.
-fn ready<'a>(name: &str, scene: &'a Scene, grid: &'a dyn Occlusion) -> Box<dyn Prepared + 'a> {
+fn ready<'a>(
+    name: &str,
+    scene: &'a Scene,
+    grid: &'a dyn Occlusion,
+    settings: &Settings,
+) -> Box<dyn Prepared + 'a> {
     const FITS: &str = "it goes with the grid";
     if name == "auto" {
-        return Box::new(Auto::new(Method::Trace, Test::Exact, scene, grid).expect(FITS));
+        let samples = settings.width * settings.height * settings.samples.pow(2);
+        let expected = u64::from(samples) * scene.lights.len() as u64;
+        let auto = Auto::new(Method::Trace, Test::Exact, scene, grid).expect(FITS);
+        return Box::new(auto.expecting(expected));
     }
     let combination: Combination = name.parse().expect("a method");
     prepare(combination, scene, grid).expect(FITS)
@@ -143,7 +151,7 @@ fn race(scene: &Scene, samples: u32) {
         .iter()
         .map(|&name| {
             let start = Instant::now();
-            let prepared = ready(name, scene, &*grid);
+            let prepared = ready(name, scene, &*grid, &settings);
             (name, prepared, start.elapsed().as_secs_f64())
         })
         .collect();
