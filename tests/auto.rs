@@ -25,8 +25,8 @@ fn clock(kind: &'static str) -> impl Fn() -> u64 + Send + Sync {
         match kind {
             "stands still" => 0,
             "ticks" => 1_000 * tick,
-            // Every batch costs something else, from a nanosecond to a second; so everybody leads by turns.
-            "leaps" => now.fetch_add(1 << (bits % 31), Relaxed),
+            // Every batch costs something else, from a nanosecond to half a millisecond; so everybody leads by turns.
+            "leaps" => now.fetch_add(1 << (bits % 20), Relaxed),
             // Forward and backward.
             "is mad" => bits,
             _ => unreachable!("no such clock"),
@@ -37,7 +37,7 @@ fn clock(kind: &'static str) -> impl Fn() -> u64 + Send + Sync {
 const CLOCKS: [&str; 4] = ["stands still", "ticks", "leaps", "is mad"];
 
 fn settings(order: Order) -> Settings {
-    Settings { width: 96, height: 64, depth: 3, mask: true, order, ..Settings::default() }
+    Settings { width: 160, height: 120, depth: 3, mask: true, order, ..Settings::default() }
 }
 
 fn picture(scene: &Scene, backend: &dyn Occlusion, by: &dyn Prepared, order: Order) -> Rendered {

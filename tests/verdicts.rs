@@ -441,3 +441,45 @@ fn a_fold_covers_nothing_beyond_its_edge() {
         }
     }
 }
+
+#[test]
+fn a_fold_right_above_a_small_voxel_covers_nothing_beyond_its_edge() {
+    // The same fold, with small triangles far away, so that voxels are small: the shaft of one that its edge crosses
+    // meets no other edge, and only the side on which both sheets lie says that some of its light comes through.
+    let mut random = Random(3);
+    let filler = |_| -> Triangle {
+        let corner = vec3(-28.0, -1.9, 6.0) + 1.5 * random.in_cube(1.0) * vec3(1.0, 0.05, 1.0);
+        [corner, corner + vec3(0.1, 0.0, 0.0), corner + vec3(0.0, 0.0, 0.1)]
+    };
+    let fillers: Vec<Triangle> = (0..6000).map(filler).collect();
+    // Voxels are half a unit wide or so: some of these edges cross one right of its middle.
+    for step in 0..8 {
+        let x = 0.1 * step as f32;
+        let (near, far) = (vec3(x, 0.0, -9.0), vec3(x, 0.0, 9.0));
+        let fold = [[near, far, vec3(-30.0, 0.0, 0.0)], [far, near, vec3(-30.0, 1.0, 0.0)]];
+        let floor = [vec3(-30.0, -2.0, -9.0), vec3(9.0, -2.0, -9.0), vec3(9.0, -2.0, 9.0)];
+        let mesh = [&fold[..], &[floor], &fillers].concat();
+        let scene = scene(&mesh, vec![point(vec3(x, 12.0, 0.0))]);
+        let kind = VerdictKind::VoxelOcclusion;
+        let exact = Test::Exact;
+        let grid = build(Backend::Grid, exact, &scene.triangles, &BuildOptions::default()).unwrap();
+        let prepared = prepare(kind, &scene, &*grid).unwrap();
+        let mut worker = prepared.worker();
+        let across = (-40..=40).flat_map(|place| (-3..=3).map(move |row| (place, row)));
+        let queries: Vec<ShadowQuery> = across
+            .map(|(place, row)| {
+                let origin = vec3(x + 0.03 * place as f32, -1.95, 0.4 * row as f32);
+                let ray = scene.lights[0].shadow_ray(origin);
+                ShadowQuery { ray, path: Path::EYE, spawner: 0 }
+            })
+            .collect();
+        let mut answers = vec![Answer::default(); queries.len()];
+        worker.answer(0, &queries, &mut answers);
+        for (query, answer) in queries.iter().zip(&answers) {
+            let blocked = grid.occluded(&query.ray, &mut Tally::default());
+            assert_eq!(answer.blocked, blocked, "edge at {x}: {:?}", query.ray);
+        }
+        let settled = worker.tally().verdicts[kind.index()];
+        assert!(settled.blocked > 0 && settled.lit > 0, "{settled:?}");
+    }
+}

@@ -8,7 +8,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{check_outputs, pool, print, write_json};
+use super::options::{pool_for, print, write_json};
 use super::progress::with_rate;
 use crate::exact::adversary::Class;
 use crate::exact::campaign::{Summary, campaign};
@@ -68,12 +68,7 @@ struct Report<'a> {
 
 impl Certify {
     pub fn run(self) -> Result<(), Failure> {
-        if self.queries == 0 {
-            return Err(Failure::Input("--queries 0: give at least 1".to_owned()));
-        }
-        let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
-        check_outputs(&outputs, &[])?;
-        let pool = pool(self.threads)?;
+        let pool = pool_for(self.queries, self.stats.as_deref(), self.threads)?;
         let start = Instant::now();
         let done = AtomicU64::new(0);
         let rows = with_rate(

@@ -7,14 +7,14 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{check_outputs, load_scene, parse_size, pool, print, write_json};
+use super::options::{
+    ContenderOptions, check_outputs, load_scene, parse_size, pool, print, write_json,
+};
 use super::progress::{with_bar, with_rate};
 use crate::measure::compare::{CompareError, Report, compare};
-use crate::measure::contender::{Choice, Selection};
+use crate::measure::contender::Selection;
 use crate::measure::recording::Recording;
-use crate::occlusion::{Backend, Test};
 use crate::render::{Picture, Progress, Settings, write_picture};
-use crate::shadow::Combination;
 use crate::whole_file::write_whole;
 
 const DETAILS: &str = "\
@@ -28,7 +28,7 @@ computed bit for bit; for its packets, what rounding can do. Nothing explains a 
 
 An Embree variant is a name like avx2-high-8-coherent: instruction set (sse2, sse4.2, avx, avx2, avx512), build
 quality (low, medium, high), rays at once (1, 4, 8, 16), coherent or not. What is left out is the default:
-the best instruction set, medium, 1. `all` is every one that this CPU has.
+the best instruction set, medium, 1. `all` is every one that this CPU has. Without --methods the engines stand alone.
 
 Exit status: 1 if an `exact` answer was wrong or a wrong answer is not explained; 2 for bad input.
 
@@ -44,19 +44,8 @@ Examples:
 pub(super) struct Compare {
     /// A built-in scene, or an .obj, .glb, .gltf or .toml file
     scene: String,
-    /// The engines; all but brute if not given
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    backends: Vec<Backend>,
-    /// The triangle tests; all if not given
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    tests: Vec<Test>,
-    /// The methods that stand before the engines, as --shadows of render has them; trace if not given
-    #[arg(long, value_delimiter = ',', value_name = "LIST")]
-    methods: Vec<Combination>,
-    /// The ways to use Embree: names like avx2-high-8-coherent, `default`, or `all`
-    #[cfg(feature = "embree")]
-    #[arg(long, value_delimiter = ',', value_name = "LIST")]
-    embree_variants: Vec<String>,
+    #[command(flatten)]
+    contenders: ContenderOptions,
     /// Size of the picture whose shadow rays are compared
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "160x120")]
     size: (u32, u32),
@@ -95,7 +84,7 @@ struct Statistics<'a> {
 
 impl Compare {
     pub fn run(self) -> Result<(), Failure> {
-        let Selection { contenders, left_out } = self.choice()?.select();
+        let Selection { contenders, left_out } = self.contenders.choice()?.select();
         if contenders.len() < 2 {
             let reasons = left_out.iter().map(|reason| format!(" ({reason})")).collect::<String>();
             return Err(Failure::Input(format!(
@@ -153,18 +142,6 @@ impl Compare {
             write_json(path, &statistics)?;
         }
         conclude(&report)
-    }
-
-    fn choice(&self) -> Result<Choice, Failure> {
-        Ok(Choice {
-            backends: self.backends.clone(),
-            tests: self.tests.clone(),
-            methods: self.methods.clone(),
-            #[cfg(feature = "embree")]
-            embree: crate::measure::contender::EmbreeVariant::list(&self.embree_variants)
-                .map_err(|error| Failure::Input(format!("--embree-variants: {error}")))?,
-            ..Choice::default()
-        })
     }
 }
 

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{check_outputs, pool, print, write_json};
+use super::options::{pool_for, print, write_json};
 use super::progress::with_word;
 use crate::measure::extremes::cases::{Case, cases};
 use crate::measure::extremes::{Conditions, Report, examine, head};
@@ -54,12 +54,7 @@ struct Table<'a> {
 
 impl Extremes {
     pub fn run(self) -> Result<(), Failure> {
-        if self.queries == 0 {
-            return Err(Failure::Input("--queries 0: give at least 1".to_owned()));
-        }
-        let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
-        check_outputs(&outputs, &[])?;
-        let pool = pool(self.threads)?;
+        let pool = pool_for(self.queries as u64, self.stats.as_deref(), self.threads)?;
         let conditions = self.conditions();
         let wanted = |case: &Case| self.cases.is_empty() || self.cases.contains(&case.name);
         let cases: Vec<_> = cases().into_iter().filter(wanted).collect();

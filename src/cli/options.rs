@@ -10,6 +10,7 @@ use clap::Args;
 
 use super::failure::{Failure, say};
 use super::progress::with_word;
+use crate::measure::contender;
 use crate::occlusion::{Backend, BackendError, BuildOptions, GridOptions, Occlusion, Test, build};
 use crate::scene::Scene;
 use crate::shadow::{
@@ -176,6 +177,52 @@ pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure>
         .num_threads(threads)
         .build()
         .map_err(|e| Failure::Input(format!("cannot start {threads} threads: {e}")))
+}
+
+/// Who is compared: every combination of these that exists.
+#[derive(Args)]
+pub(super) struct ContenderOptions {
+    /// The engines; all but brute if not given
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    backends: Vec<Backend>,
+    /// The triangle tests; all if not given
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    tests: Vec<Test>,
+    /// The methods that stand before the engines, as --shadows of render has them
+    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    pub methods: Vec<Combination>,
+    /// The ways to use Embree: names like avx2-high-8-coherent, `default`, or `all`
+    #[cfg(feature = "embree")]
+    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    pub embree_variants: Vec<String>,
+}
+
+impl ContenderOptions {
+    /// What was named.
+    pub fn choice(&self) -> Result<contender::Choice, Failure> {
+        Ok(contender::Choice {
+            backends: self.backends.clone(),
+            tests: self.tests.clone(),
+            methods: self.methods.clone(),
+            #[cfg(feature = "embree")]
+            embree: contender::EmbreeVariant::list(&self.embree_variants)
+                .map_err(|error| Failure::Input(format!("--embree-variants: {error}")))?,
+            ..contender::Choice::default()
+        })
+    }
+}
+
+/// The threads of a command that puts so many queries of its own making, once it is clear that it can run.
+pub(super) fn pool_for(
+    queries: u64,
+    stats: Option<&Path>,
+    threads: Option<usize>,
+) -> Result<rayon::ThreadPool, Failure> {
+    if queries == 0 {
+        return Err(Failure::Input("--queries 0: give at least 1".to_owned()));
+    }
+    check_outputs(&Vec::from_iter(stats), &[])?;
+    pool(threads)
 }
 
 /// What stands before the engine.

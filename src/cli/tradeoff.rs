@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{Failure, say};
-use super::options::{check_outputs, load_scene, parse_size, pool, print, write_json};
+use super::options::{
+    ContenderOptions, check_outputs, load_scene, parse_size, pool, print, write_json,
+};
 use super::progress::with_bar;
 use crate::measure::contender::{Choice, Contender, Selection};
 use crate::measure::tradeoff::{Conditions, Report, csv, measure, page, plot, table};
-use crate::occlusion::{Backend, Test};
 use crate::render::{Progress, Settings};
 use crate::shadow::{Combination, Method};
 use crate::whole_file::write_whole;
@@ -22,7 +23,8 @@ measurements spread. Wrong is what differs from exact arithmetic on the rays' bi
 triangle at their end are ties, counted apart.
 
 The default is the whole product of engines, tests, methods and ways to use Embree, and takes minutes;
---quick takes seconds, but its figures are rough.
+--quick takes seconds, but its figures are rough. Methods are all memories and all verdicts, one at a time;
+ways to use Embree every quality and width of the best instruction set, all but the default without methods.
 
 Exit status: 1 if an `exact` answer was wrong, or answers changed from pass to pass; 2 for bad input.
 
@@ -37,21 +39,8 @@ Examples:
 pub(super) struct Tradeoff {
     /// A built-in scene, or an .obj, .glb, .gltf or .toml file
     scene: String,
-    /// The engines; all but brute if not given
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    backends: Vec<Backend>,
-    /// The triangle tests; all if not given
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    tests: Vec<Test>,
-    /// The methods that stand before the engines, as --shadows of render has them; all memories and all
-    /// verdicts, one at a time, if not given
-    #[arg(long, value_delimiter = ',', value_name = "LIST")]
-    methods: Vec<Combination>,
-    /// The ways to use Embree: names like avx2-high-8-coherent, `default`, or `all`; if not given, every
-    /// quality and width of the best instruction set, all but the default without methods
-    #[cfg(feature = "embree")]
-    #[arg(long, value_delimiter = ',', value_name = "LIST")]
-    embree_variants: Vec<String>,
+    #[command(flatten)]
+    contenders: ContenderOptions,
     /// Size of the picture whose shadow rays are answered
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
@@ -99,7 +88,7 @@ impl Tradeoff {
         let pool = pool(self.threads)?;
         let scene = load_scene(&self.scene)?;
         // Of combinations that nobody named, nobody misses those that do not exist.
-        for reason in left_out.iter().filter(|_| !self.methods.is_empty()) {
+        for reason in left_out.iter().filter(|_| !self.contenders.methods.is_empty()) {
             say!("umbra: left out: {reason}");
         }
         let progress = Progress::default();
@@ -129,11 +118,13 @@ impl Tradeoff {
     /// variant, so it is measured before the default one.
     fn is_wanted(&self, contender: &Contender) -> bool {
         #[cfg(feature = "embree")]
-        let is_default =
-            !self.embree_variants.is_empty() || contender.options.embree == Default::default();
+        let is_default = !self.contenders.embree_variants.is_empty()
+            || contender.options.embree == Default::default();
         #[cfg(not(feature = "embree"))]
         let is_default = true;
-        is_default || !self.methods.is_empty() || contender.method == Combination::default()
+        is_default
+            || !self.contenders.methods.is_empty()
+            || contender.method == Combination::default()
     }
 
     fn conditions(&self, contenders: Vec<Contender>) -> Conditions {
@@ -168,33 +159,22 @@ impl Tradeoff {
     }
 
     fn choice(&self) -> Result<Choice, Failure> {
-        let methods = match &self.methods[..] {
-            [] if self.quick => [Method::Trace, Method::VoxelCache].map(Combination::from).to_vec(),
-            [] => Choice::every_method(),
-            named => named.to_vec(),
-        };
-        Ok(Choice {
-            backends: self.backends.clone(),
-            tests: self.tests.clone(),
-            methods,
-            #[cfg(feature = "embree")]
-            embree: self.embree()?,
-            ..Choice::default()
-        })
-    }
-
-    /// The ways to use Embree.
-    #[cfg(feature = "embree")]
-    fn embree(&self) -> Result<Vec<crate::measure::contender::EmbreeVariant>, Failure> {
-        use crate::measure::contender::EmbreeVariant;
-        use crate::occlusion::{EmbreeOptions, Quality};
-        if !self.embree_variants.is_empty() {
-            return EmbreeVariant::list(&self.embree_variants)
-                .map_err(|error| Failure::Input(format!("--embree-variants: {error}")));
+        let mut choice = self.contenders.choice()?;
+        if choice.methods.is_empty() {
+            choice.methods = match self.quick {
+                true => [Method::Trace, Method::VoxelCache].map(Combination::from).to_vec(),
+                false => Choice::every_method(),
+            };
         }
-        let is_default = |options: &EmbreeOptions| options.quality == Quality::default();
-        let best = EmbreeVariant::of_best_isa();
-        Ok(best.into_iter().filter(|variant| !self.quick || is_default(&variant.0)).collect())
+        #[cfg(feature = "embree")]
+        if choice.embree.is_empty() {
+            use crate::measure::contender::EmbreeVariant;
+            use crate::occlusion::Quality;
+            choice.embree = EmbreeVariant::of_best_isa();
+            let is_default = |variant: &EmbreeVariant| variant.0.quality == Quality::default();
+            choice.embree.retain(|variant| !self.quick || is_default(variant));
+        }
+        Ok(choice)
     }
 }
 

@@ -53,6 +53,8 @@ pub struct Chart {
     pub marks: Vec<Mark>,
     /// Places among the marks of those that no other beats, along the horizontal axis: ringed and joined.
     pub front: Vec<usize>,
+    /// Places among the marks of those that belong together, along the horizontal axis: joined.
+    pub curves: Vec<Vec<usize>>,
     /// What hues and shapes mean.
     pub legend: Vec<(Look, String)>,
 }
@@ -268,9 +270,15 @@ impl Plot<'_> {
             }
         }
         let front: Vec<_> = self.chart.front.iter().map(|&mark| places[mark]).collect();
-        if front.len() > 1 {
-            let line: Vec<_> = front.iter().map(|(x, y)| format!("{x:.1} {y:.1}")).collect();
-            put(svg, format_args!("<path class=\"front\" d=\"M{}\"/>\n", line.join("L")));
+        let curves = self.chart.curves.iter().map(|curve| ("spread", curve));
+        for (class, joined) in curves.chain([("front", &self.chart.front)]) {
+            if joined.len() > 1 {
+                let line: Vec<_> = joined
+                    .iter()
+                    .map(|&mark| format!("{:.1} {:.1}", places[mark].0, places[mark].1))
+                    .collect();
+                put(svg, format_args!("<path class=\"{class}\" d=\"M{}\"/>\n", line.join("L")));
+            }
         }
         for (mark, &(x, y)) in self.chart.marks.iter().zip(&places) {
             *svg += &mark.look.svg(x, y, &mark.tooltip);

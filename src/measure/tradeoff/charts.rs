@@ -143,6 +143,7 @@ fn chart(
         zeros: String::new(),
         marks: marks.collect(),
         front: front.to_vec(),
+        curves: Vec::new(),
         legend: legend(points),
     }
 }
@@ -203,6 +204,7 @@ impl Line<'_> {
             zeros: "no difference".to_owned(),
             marks,
             front,
+            curves: Vec::new(),
             legend: Vec::new(),
         }
     }

@@ -12,10 +12,6 @@ const PRIOR: f64 = 4096.0;
 /// Queries after which what was seen counts half.
 const HORIZON: f64 = 262_144.0;
 
-/// An observation counts for at most so many times what was expected: what takes longer was interrupted, by
-/// another program or by the system.
-const MOST_SURPRISE: f64 = 8.0;
-
 /// Time and queries.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sum {
@@ -68,8 +64,6 @@ impl Level {
         nanoseconds: f64,
         above: Option<f64>,
     ) {
-        let expected = self.estimate(candidate, above).map(|estimate| estimate * queries);
-        let nanoseconds = expected.map_or(nanoseconds, |e| nanoseconds.min(MOST_SURPRISE * e));
         let sum = &mut self.sums[candidate];
         sum.nanoseconds += nanoseconds;
         sum.queries += queries;
@@ -110,17 +104,6 @@ mod tests {
         level.observe(0, 1e5, 1e5 * 300.0, Some(100.0));
         let other = level.estimate(1, Some(50.0)).unwrap();
         assert!((130.0..160.0).contains(&other), "{other}");
-    }
-
-    #[test]
-    fn an_interruption_counts_for_little() {
-        let mut level = Level::new(1);
-        for _ in 0..64 {
-            level.observe(0, 256.0, 256.0 * 40.0, None);
-        }
-        level.observe(0, 256.0, 4e6, None);
-        let after = level.estimate(0, None).unwrap();
-        assert!(after < 46.0, "{after}");
     }
 
     #[test]

@@ -9,7 +9,7 @@
 //! 3. **Rent before you buy** (the ski-rental rule; Karlin, Manasse, Rudolph, Sleator 1988). What has to be built
 //!    is built when the time that its lack has cost so far is the price of building: for the scene, as soon as all
 //!    time spent is the price; for a light, as soon as its queries would have been cheaper by it. A
-//!    candidate that was never seen counts as free there, so that it gets a chance.
+//!    candidate that was never seen is taken to be cheap there, so that it gets a chance.
 //!
 //! **Bound.** With costs that stay the same, the time of all queries is at most (2 + 1/√b) times that of the best single
 //! candidate in hindsight, building included, and (1 + 1/√b) times where nothing has to be built; and besides,
@@ -22,6 +22,14 @@
 use std::collections::HashMap;
 
 use super::estimate::Level;
+
+/// A batch counts for at most so many times what was expected: what takes longer was interrupted, by another
+/// program or by the system.
+const MOST_SURPRISE: f64 = 8.0;
+
+/// What a light's structure that was never seen is taken to cost a query, as a share of what others need:
+/// structures for lights were not seen to save more than half (docs/methods.md).
+const UNSEEN: f64 = 0.5;
 
 /// What is known of a candidate beforehand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -172,6 +180,9 @@ impl Policy {
     pub fn observe(&mut self, seen: &Observation) {
         let &Observation { light, place, choice, queries, nanoseconds, building } = seen;
         let Choice { candidate, reason } = choice;
+        let expected = self.estimate(candidate, light, place);
+        let nanoseconds =
+            expected.map_or(nanoseconds, |e| nanoseconds.min(MOST_SURPRISE * e * queries));
         if reason == Reason::Trial {
             let least = (0..self.prices.len())
                 .filter(|&c| c != candidate && self.prepared[c].is_some())
@@ -183,9 +194,16 @@ impl Policy {
         }
         self.batches += 1.0;
         self.spent += nanoseconds + building;
-        for c in (0..self.prices.len()).filter(|&c| self.prices[c].light.is_some()) {
+        for c in 0..self.prices.len() {
+            if self.prices[c].light.is_none() {
+                continue;
+            }
             let account = &mut self.lights[light].accounts[c];
             if c == candidate {
+                if account.built == 0.0 && building > 0.0 {
+                    // What the first batch built here, it will build at other lights.
+                    self.prices[c].light = Some(building);
+                }
                 account.built += building;
                 account.last_built = building;
             } else {
@@ -249,8 +267,8 @@ impl Policy {
     /// What the queries of a light that others answered would have cost less.
     fn saving(&self, candidate: usize, light: usize) -> f64 {
         let account = &self.lights[light].accounts[candidate];
-        account.without
-            - account.queries_without * self.at_light(candidate, light).unwrap_or_default()
+        let cost = self.at_light(candidate, light).map(|cost| cost * account.queries_without);
+        account.without - cost.unwrap_or(UNSEEN * account.without)
     }
 }
 

@@ -230,3 +230,25 @@ fn the_first_batch_goes_to_the_candidate_that_needs_nothing() {
     let world = World::flat(|_, _, _, _| 1.0, 3);
     assert_eq!(world.policy().choose(0, 0, BATCH), Choice { candidate: 0, reason: LEADS });
 }
+
+#[test]
+fn an_interruption_counts_for_little() {
+    let mut policy = World::flat(|_, _, _, _| 1.0, 2).policy();
+    let mut observe = |nanoseconds: f64| {
+        let choice = Choice::again(0);
+        policy.observe(&Observation {
+            light: 0,
+            place: 0,
+            choice,
+            queries: BATCH,
+            nanoseconds,
+            building: 0.0,
+        });
+        policy.at_light(0, 0).expect("it was seen")
+    };
+    for _ in 0..64 {
+        observe(40.0 * BATCH);
+    }
+    let after = observe(4e6);
+    assert!(after < 46.0, "{after}");
+}

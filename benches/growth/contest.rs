@@ -1,0 +1,174 @@
+//! Contenders that answer the shadow queries of a picture in turns.
+//!
+//! In each round every contender is prepared from nothing, asked once, and asked again; medians of the rounds count.
+//! Units of the picture are asked as the renderer asks them, each by a worker of its own. In one thread, time is that
+//! of its processor, so that other programs disturb little; with several, it is that of the clock on the wall.
+
+use std::time::Instant;
+
+use rayon::prelude::*;
+use umbra::geometry::Ray;
+use umbra::measure::paper::thread_time;
+use umbra::occlusion::{Occlusion, Tally};
+use umbra::render::{Settings, record};
+use umbra::scene::Scene;
+use umbra::shadow::{Answer, Prepared, ShadowQuery, Trace};
+
+/// Queries about one light that follow each other.
+struct Run {
+    light: usize,
+    queries: Vec<ShadowQuery>,
+    rays: Vec<Ray>,
+}
+
+/// The shadow queries of a picture, unit by unit.
+pub struct Queries {
+    units: Vec<Vec<Run>>,
+    pub count: usize,
+}
+
+impl Queries {
+    /// What a picture asks, with an engine for the rays that see.
+    pub fn of(scene: &Scene, seeing: &dyn Occlusion, settings: &Settings) -> Self {
+        let (mut units, mut count) = (Vec::new(), 0);
+        let recorded = record(scene, seeing, &Trace::new(seeing), settings, |unit| {
+            count += unit.len();
+            let runs = unit.chunk_by(|a, b| a.light == b.light).map(|run| {
+                let queries: Vec<ShadowQuery> = run.iter().map(|recorded| recorded.query).collect();
+                let rays = queries.iter().map(|query| query.ray).collect();
+                Run { light: run[0].light as usize, queries, rays }
+            });
+            units.push(runs.collect());
+        });
+        recorded.expect("the settings make a picture");
+        Self { units, count }
+    }
+}
+
+/// What answers.
+pub enum Answers<'a> {
+    /// An engine that is there already.
+    Engine(&'a dyn Occlusion),
+    /// A shadow method.
+    Method(Box<dyn Prepared + 'a>),
+}
+
+impl Answers<'_> {
+    /// How many queries of a unit are blocked.
+    fn blocked_in(&self, unit: &[Run]) -> usize {
+        let mut blocked = 0;
+        match self {
+            Self::Engine(engine) => {
+                let mut answers = Vec::new();
+                for run in unit {
+                    answers.clear();
+                    answers.resize(run.rays.len(), false);
+                    engine.occluded_many(&run.rays, &mut answers, &mut Tally::default());
+                    blocked += answers.iter().filter(|blocked| **blocked).count();
+                }
+            }
+            Self::Method(prepared) => {
+                let mut worker = prepared.worker();
+                let mut answers = Vec::new();
+                for run in unit {
+                    answers.clear();
+                    answers.resize(run.queries.len(), Answer::default());
+                    worker.answer(run.light, &run.queries, &mut answers);
+                    blocked += answers.iter().filter(|answer| answer.blocked).count();
+                }
+            }
+        }
+        blocked
+    }
+
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Engine(engine) => engine.memory(),
+            Self::Method(prepared) => prepared.memory(),
+        }
+    }
+}
+
+/// Somebody who takes part.
+pub struct Contender<'a> {
+    pub name: &'static str,
+    /// Seconds spent on it before: an engine's building.
+    pub built: f64,
+    /// Makes it ready, from nothing.
+    pub prepare: Box<dyn Fn() -> Answers<'a> + Sync + 'a>,
+}
+
+/// What it cost: nanoseconds of all queries, medians.
+#[derive(Clone, Debug)]
+pub struct Costs {
+    pub name: &'static str,
+    pub preparing: f64,
+    pub first: f64,
+    pub then: f64,
+    pub bytes: usize,
+    pub blocked: usize,
+}
+
+impl Costs {
+    /// Preparing and asking once.
+    pub fn whole(&self) -> f64 {
+        self.preparing + self.first
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Lets all take turns, so many rounds, on so many threads.
+pub fn measure(
+    contenders: &[Contender<'_>],
+    queries: &Queries,
+    rounds: usize,
+    threads: usize,
+) -> Vec<Costs> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let start = Instant::now();
+    let now = || match threads {
+        1 => thread_time() as f64,
+        _ => start.elapsed().as_nanos() as f64,
+    };
+    let mut all: Vec<Vec<Costs>> = contenders.iter().map(|_| Vec::new()).collect();
+    for round in 0..rounds {
+        for turn in 0..contenders.len() {
+            let which = (turn + round) % contenders.len();
+            let Contender { name, built, prepare } = &contenders[which];
+            let costs = pool.install(|| {
+                let began = now();
+                let answers = prepare();
+                let prepared = now();
+                let pass = || -> usize {
+                    queries.units.par_iter().map(|unit| answers.blocked_in(unit)).sum()
+                };
+                let blocked = pass();
+                let asked = now();
+                assert_eq!(blocked, pass(), "{name} says now this, now that");
+                Costs {
+                    name,
+                    preparing: built * 1e9 + prepared - began,
+                    first: asked - prepared,
+                    then: now() - asked,
+                    bytes: answers.bytes(),
+                    blocked,
+                }
+            });
+            all[which].push(costs);
+        }
+    }
+    let middle =
+        |costs: &Vec<Costs>, part: fn(&Costs) -> f64| median(costs.iter().map(part).collect());
+    all.iter()
+        .map(|costs| Costs {
+            preparing: middle(costs, |costs| costs.preparing),
+            first: middle(costs, |costs| costs.first),
+            then: middle(costs, |costs| costs.then),
+            ..costs[0].clone()
+        })
+        .collect()
+}

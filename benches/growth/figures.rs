@@ -1,0 +1,103 @@
+//! The curves as CSV and SVG.
+
+use std::fmt::Write;
+use std::io;
+use std::path::Path;
+
+use umbra::measure::report::{
+    Chart, Dimension, Hue, LogAxis, Look, Mark, Shape, document, tick_label,
+};
+use umbra::whole_file::write_whole;
+
+use super::contest::Costs;
+use super::curves::{CONTENDERS, Curve, Point};
+
+/// Width of the charts.
+const WIDTH: f64 = 900.0;
+
+/// Hue and shape of a contender; Embree's are hollow.
+fn look(name: &str) -> Look {
+    let (hue, shape, filled) = match name {
+        "grid trace" => (Hue::Blue, Shape::Circle, true),
+        "shaft" => (Hue::Green, Shape::Square, true),
+        "light-buffer" => (Hue::Purple, Shape::Triangle, true),
+        "auto" => (Hue::Ink, Shape::Diamond, true),
+        "embree single" => (Hue::Vermillion, Shape::Circle, false),
+        _ => (Hue::Orange, Shape::Square, false),
+    };
+    Look { hue, shape, filled }
+}
+
+/// Writes a curve's points and charts.
+pub fn write(folder: &Path, curve: &Curve, points: &[Point]) -> io::Result<()> {
+    let file = |ending: &str| folder.join(format!("growth-{}.{ending}", curve.name));
+    write_whole(&file("csv"), csv(curve, points).as_bytes())?;
+    let mut charts = Vec::new();
+    for same in points.chunk_by(|a, b| a.scene == b.scene) {
+        charts.push(chart(curve, same, "everything built", |costs| costs.then));
+        charts.push(chart(curve, same, "building included", Costs::whole));
+    }
+    write_whole(&file("svg"), document(&charts, WIDTH).as_bytes())
+}
+
+fn csv(curve: &Curve, points: &[Point]) -> String {
+    let mut text = format!(
+        "scene,{},queries,contender,prepare_ns,first_pass_ns,later_pass_ns,ns_a_query,ns_a_query_with_building,bytes,blocked\n",
+        curve.name
+    );
+    for Point { scene, x, queries, costs } in points {
+        for cost in costs {
+            let Costs { name, preparing, first, then, bytes, blocked } = cost;
+            let each = |nanoseconds: f64| nanoseconds / *queries as f64;
+            let _ = writeln!(
+                text,
+                "{scene},{x},{queries},{name},{preparing:.0},{first:.0},{then:.0},{:.2},{:.2},{bytes},{blocked}",
+                each(*then),
+                each(cost.whole())
+            );
+        }
+    }
+    text
+}
+
+fn chart(curve: &Curve, points: &[Point], what: &str, cost: fn(&Costs) -> f64) -> Chart {
+    let mut marks = Vec::new();
+    let mut curves = Vec::new();
+    let mut legend = Vec::new();
+    for name in CONTENDERS {
+        let first = marks.len();
+        for Point { x, queries, costs, .. } in points {
+            let Some(costs) = costs.iter().find(|costs| costs.name == name) else { continue };
+            let nanoseconds = cost(costs) / *queries as f64;
+            marks.push(Mark {
+                x: *x as f64,
+                y: nanoseconds,
+                x_spread: None,
+                y_spread: None,
+                look: look(name),
+                label: String::new(),
+                tooltip: format!("{name}, {x} {}: {nanoseconds:.1} ns a query", curve.name),
+            });
+        }
+        if marks.len() > first {
+            curves.push((first..marks.len()).collect());
+            legend.push((look(name), name.to_owned()));
+        }
+    }
+    let scene = points.first().map_or("", |point| &point.scene);
+    let axis = |values: fn(&Mark) -> f64| LogAxis::over(marks.iter().map(values));
+    Chart {
+        title: format!("{scene}: a shadow ray, {what}"),
+        x: Dimension { title: curve.axis.to_owned(), axis: axis(|mark| mark.x), label: tick_label },
+        y: Dimension {
+            title: "↓ nanoseconds a shadow ray".to_owned(),
+            axis: axis(|mark| mark.y),
+            label: tick_label,
+        },
+        zeros: String::new(),
+        front: Vec::new(),
+        curves,
+        legend,
+        marks,
+    }
+}
