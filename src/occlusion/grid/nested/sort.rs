@@ -113,8 +113,8 @@ impl Lattice {
                 let high = Vec4::splat(a.max(b).max(c) + radius);
                 let places = across_u * centres[u];
                 let mut inside = 0;
-                for row in 0..4 {
-                    let places = places + across_v * centres[v][row];
+                for (row, centre) in centres[v].to_array().into_iter().enumerate() {
+                    let places = places + across_v * centre;
                     let within = places.cmpge(low) & places.cmple(high);
                     inside |= u64::from(within.bitmask()) << (4 * row);
                 }
