@@ -3,14 +3,12 @@
 //! `cargo bench --bench race -- SAMPLES SCENE…` renders each scene with SAMPLES×SAMPLES samples a pixel, and
 //! hands the shadow queries of each part of the picture to all racers in turn, as the renderer asks them: light by
 //! light, tile by tile. Embree runs in every way that was ever the fastest: single rays and packets, coherent or
-//! not, default and robust, medium and high quality; the best one is the measure. Times are of this thread's CPU, so
-//! what else the machine does disturbs all alike; the ratio to the best Embree is given for the whole, and its
-//! quartiles over the parts without preparation.
-
-use std::time::Instant;
+//! not, default and robust, medium and high quality; the best one is the measure. Times are of this process's
+//! CPU, all threads together where something is built, so what else the machine does disturbs little; the ratio
+//! to the best Embree is given for the whole, and its quartiles over the parts without preparation.
 
 use umbra::geometry::Ray;
-use umbra::measure::paper::thread_time;
+use umbra::measure::paper::process_time;
 use umbra::occlusion::{
     Backend, BuildOptions, Embree, EmbreeOptions, Occlusion, PacketWidth, Quality, Tally, Test,
     build,
@@ -57,7 +55,7 @@ fn embrees(scene: &Scene) -> Vec<(String, Embree, f64)> {
             (PacketWidth::Sixteen, true),
             (PacketWidth::Sixteen, false),
         ] {
-            let start = Instant::now();
+            let start = process_time();
             let options = EmbreeOptions { quality, width, coherent, ..EmbreeOptions::default() };
             // 16-wide kernels need AVX-512.
             let Ok(embree) = Embree::new(scene.triangles.clone(), robust, options) else {
@@ -66,7 +64,7 @@ fn embrees(scene: &Scene) -> Vec<(String, Embree, f64)> {
             let mode = if robust { "robust" } else { "default" };
             let coherence = if coherent { " coherent" } else { "" };
             let name = format!("embree {mode} {quality:?} {width:?}{coherence}").to_lowercase();
-            ways.push((name, embree, start.elapsed().as_secs_f64()));
+            ways.push((name, embree, seconds_since(start)));
         }
     }
     ways
@@ -90,6 +88,11 @@ fn ready<'a>(
     prepare(combination, scene, grid).expect(FITS)
 }
 
+/// Seconds that this process ran since then, all threads together.
+fn seconds_since(start: u64) -> f64 {
+    (process_time() - start) as f64 * 1e-9
+}
+
 struct Racer<'a> {
     name: String,
     kind: Kind<'a>,
@@ -108,7 +111,7 @@ impl Racer<'_> {
     fn run(&mut self, runs: &[(usize, Vec<ShadowQuery>, Vec<Ray>)]) {
         let mut blocked = Vec::new();
         let mut answers = Vec::new();
-        let start = thread_time();
+        let start = process_time();
         let mut count = 0;
         for (light, queries, rays) in runs {
             match &mut self.kind {
@@ -126,7 +129,7 @@ impl Racer<'_> {
                 }
             }
         }
-        self.parts.push(thread_time() - start);
+        self.parts.push(process_time() - start);
         self.blocked += count as u64;
     }
 
@@ -150,9 +153,9 @@ fn race(scene: &Scene, samples: u32) {
     let ours: Vec<(&str, Box<dyn Prepared + '_>, f64)> = OURS
         .iter()
         .map(|&name| {
-            let start = Instant::now();
+            let start = process_time();
             let prepared = ready(name, scene, &*grid, &settings);
-            (name, prepared, start.elapsed().as_secs_f64())
+            (name, prepared, seconds_since(start))
         })
         .collect();
     let racer = |name: String, kind, prepared| Racer {

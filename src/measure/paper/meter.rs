@@ -121,6 +121,7 @@ struct TimeSpec {
     nanoseconds: c_long,
 }
 
+const PROCESS_CPU_TIME: c_int = 2;
 const THREAD_CPU_TIME: c_int = 3;
 
 unsafe extern "C" {
@@ -155,10 +156,20 @@ fn open_counter() -> Option<File> {
 /// Nanoseconds that the calling thread ran.
 #[must_use]
 pub fn thread_time() -> u64 {
+    time(THREAD_CPU_TIME)
+}
+
+/// Nanoseconds that all threads of this process ran, together.
+#[must_use]
+pub fn process_time() -> u64 {
+    time(PROCESS_CPU_TIME)
+}
+
+fn time(clock: c_int) -> u64 {
     let mut time = TimeSpec::default();
     // SAFETY: the call writes one `timespec`, whose layout on 64-bit systems this is.
-    let outcome = unsafe { clock_gettime(THREAD_CPU_TIME, &raw mut time) };
-    assert_eq!(outcome, 0, "the thread's clock is to be had since Linux 2.6.12");
+    let outcome = unsafe { clock_gettime(clock, &raw mut time) };
+    assert_eq!(outcome, 0, "these clocks are to be had since Linux 2.6.12");
     time.seconds as u64 * 1_000_000_000 + time.nanoseconds as u64
 }
 

@@ -27,7 +27,7 @@ use crate::shadow::{LastVoxel, Method, MethodError, PerPath, Plan, ShadowTally, 
 use lockstep::{Contestant, Taken, render_all};
 
 pub use callgrind::{Callgrind, LOG, callgrind};
-pub use meter::{Meter, Unit, thread_time};
+pub use meter::{Meter, Unit, process_time, thread_time};
 pub use published::{Published, Storage, TABLE, storage};
 pub use table::storage_table;
 pub use variants::{VARIANTS, Variant, VariantCost, VariantReport, compare_variants};
