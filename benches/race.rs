@@ -17,13 +17,15 @@ use umbra::occlusion::{
 };
 use umbra::render::{RecordedQuery, Settings, record};
 use umbra::scene::{Scene, builtin, load};
-use umbra::shadow::{Answer, Combination, Prepared, ShadowQuery, Shadows, Trace, prepare};
+use umbra::shadow::{
+    Answer, Auto, Combination, Method, Prepared, ShadowQuery, Shadows, Trace, prepare,
+};
 
 /// Queries of a part.
 const PART: usize = 100_000;
 
 /// Who runs with umbra's grid behind: by the names of the command line.
-const OURS: [&str; 4] = ["trace", "light-buffer", "shaft", "shaft+light-buffer"];
+const OURS: [&str; 5] = ["trace", "light-buffer", "shaft", "shaft+light-buffer", "auto"];
 
 const USAGE: &str = "cargo bench --bench race -- SAMPLES SCENE…, like 3 drum chair-room";
 
@@ -68,6 +70,24 @@ fn embrees(scene: &Scene) -> Vec<(String, Embree, f64)> {
         }
     }
     ways
+}
+
+/// One of umbra's ways, made ready.
+fn ready<'a>(
+    name: &str,
+    scene: &'a Scene,
+    grid: &'a dyn Occlusion,
+    settings: &Settings,
+) -> Box<dyn Prepared + 'a> {
+    const FITS: &str = "it goes with the grid";
+    if name == "auto" {
+        let samples = settings.width * settings.height * settings.samples.pow(2);
+        let expected = u64::from(samples) * scene.lights.len() as u64;
+        let auto = Auto::new(Method::Trace, Test::Exact, scene, grid).expect(FITS);
+        return Box::new(auto.expecting(expected));
+    }
+    let combination: Combination = name.parse().expect("a method");
+    prepare(combination, scene, grid).expect(FITS)
 }
 
 struct Racer<'a> {
@@ -130,9 +150,8 @@ fn race(scene: &Scene, samples: u32) {
     let ours: Vec<(&str, Box<dyn Prepared + '_>, f64)> = OURS
         .iter()
         .map(|&name| {
-            let combination: Combination = name.parse().expect("a method");
             let start = Instant::now();
-            let prepared = prepare(combination, scene, &*grid).expect("it goes with the grid");
+            let prepared = ready(name, scene, &*grid, &settings);
             (name, prepared, start.elapsed().as_secs_f64())
         })
         .collect();

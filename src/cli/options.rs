@@ -287,12 +287,13 @@ impl ShadowOptions {
         self.shadows.to_string()
     }
 
-    /// Makes it ready for a scene and a backend with this test, within a memory limit.
+    /// Makes it ready for a scene and a backend with this test, within a memory limit, for about so many queries.
     pub fn prepare<'a>(
         &self,
         scene: &'a Scene,
         backend: &'a dyn Occlusion,
         engine: &EngineOptions,
+        expected: u64,
     ) -> Result<Box<dyn Prepared + 'a>, MethodError> {
         // Embree has no exact test, so nobody but Embree gives its bits, and there is nothing to choose among. Shafts answer
         // all rays to lights, exactly, and in less time than Embree's single rays.
@@ -319,7 +320,10 @@ impl ShadowOptions {
                 );
                 prepare(plan, scene, backend)
             }
-            Choice::Auto => Ok(Box::new(Auto::new(plan, engine.test(), scene, backend)?)),
+            Choice::Auto => {
+                let auto = Auto::new(plan, engine.test(), scene, backend)?;
+                Ok(Box::new(auto.expecting(expected)))
+            }
         }
     }
 }

@@ -23,8 +23,8 @@ const DETAILS: &str = "\
 Everything runs in one thread; the pictures are the paper's unless a size is given. All methods render
 in turns, a few milliseconds each; of each piece of the picture the least of all repetitions counts. The
 ± is half the difference between the even and the odd repetitions. The whole table takes hours;
---every 9 makes it of a ninth of the scanlines, in pairs of neighbours, which changes rates and gains
-little; --quick takes seconds, but its rates and gains are those of other pictures.
+--every 9 makes it of a ninth of the scanlines, which changes rates and gains little; --quick takes
+seconds, but its rates and gains are those of other pictures.
 
 --instructions counts instructions instead of time, which gives the same figures every time, whatever
 else the machine does. It runs umbra again under Valgrind, which must be installed: that takes some ten
@@ -60,7 +60,7 @@ pub(super) struct Paper {
     /// Samples along each side of a pixel, instead of the paper's: 3, and 1 for the drum
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
-    /// Renders one scanline of every so many only, in pairs of neighbours
+    /// Renders one scanline of every so many only
     #[arg(long, value_name = "N", default_value_t = 1)]
     every: u32,
     /// Reflections and refractions that a ray may go through

@@ -154,9 +154,11 @@ impl Render {
         }
         let (backend, build_seconds) = self.engine.build(&scene)?;
         let start = Instant::now();
-        let shadows = self.shadows.prepare(&scene, &*backend, &self.engine)?;
-        let progress = Progress::default();
         let pixels = u64::from(settings.width) * u64::from(settings.height);
+        let samples = u64::from(settings.samples).pow(2);
+        let expected = pixels * samples * scene.lights.len() as u64;
+        let shadows = self.shadows.prepare(&scene, &*backend, &self.engine, expected)?;
+        let progress = Progress::default();
         let rendered = with_bar(pixels, &progress, || {
             render(&scene, &*backend, &*shadows, settings, &progress)
         })?;

@@ -87,12 +87,14 @@ impl<'a> Piecewise<'a> {
         })
     }
 
-    /// Whether a scanline, or tile, is among one of every so many. Of twice so many the middle two are: two
-    /// neighbours, an even and an odd one, so serpentine scanlines turn as they do in the whole picture.
+    /// Whether a scanline, or tile, is the one that is picked of every so many: one in their middle, in turn an
+    /// even and an odd one, so that serpentine scanlines turn.
     #[must_use]
     pub fn picks(row: u32, every: u32) -> bool {
-        let place = u64::from(row) % (2 * u64::from(every));
-        place + 1 == u64::from(every) || place == u64::from(every)
+        let group = row / every;
+        let middle = group * every + every / 2;
+        // Where the parity is not that of the group's number, the neighbour is picked.
+        row == middle ^ ((middle ^ group) & 1)
     }
 
     /// Number of pieces in all.
@@ -134,12 +136,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_row_of_every_so_many_is_picked_and_as_many_even_ones_as_odd_ones() {
+    fn one_row_of_every_so_many_is_picked_in_turn_an_even_and_an_odd_one() {
         for every in 1..20 {
-            let height = 2 * every * 30;
-            let rows: Vec<u32> = (0..height).filter(|&row| Piecewise::picks(row, every)).collect();
-            assert_eq!(rows.len() as u32, height / every, "one in {every}");
-            assert!(rows.chunks(2).all(|pair| pair[0] + 1 == pair[1]), "one in {every}: {rows:?}");
+            let rows = (0..every * 60).filter(|&row| Piecewise::picks(row, every));
+            let rows: Vec<u32> = rows.collect();
+            assert_eq!(rows.len(), 60, "one in {every}");
+            for (group, &row) in (0..).zip(&rows) {
+                assert_eq!(row / every, group, "one in {every}: {rows:?}");
+                assert_eq!(row % 2, group % 2, "one in {every}: {rows:?}");
+            }
         }
     }
 

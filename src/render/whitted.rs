@@ -63,6 +63,9 @@ pub(super) struct Unit<'a> {
     /// Queries that are not blocked, and what it says of them.
     lit: Vec<ShadowQuery>,
     clear: Vec<Option<bool>>,
+    /// Kept from batch to batch, as all of these, lest every sample allocate its own.
+    generation: Vec<Seeing>,
+    vertices: Vec<Vertex>,
     /// Radiance that each sample of the batch has gathered.
     gathered: Vec<Vec3>,
     done: Done,
@@ -115,6 +118,8 @@ impl<'a> Unit<'a> {
             glass: scene.has_transparent().then(|| shadows.glass()).flatten(),
             lit: Vec::new(),
             clear: Vec::new(),
+            generation: Vec::new(),
+            vertices: Vec::new(),
             gathered: Vec::new(),
             done: Done::default(),
             queries: Vec::new(),
@@ -174,23 +179,23 @@ impl<'a> Unit<'a> {
         self.gathered.clear();
         self.gathered.resize(samples.len(), Vec3::ZERO);
         let pixel_of = |sample: u32| (samples.start + sample as usize) / a_pixel;
-        let mut generation: Vec<Seeing> = samples
-            .clone()
-            .map(|index| Seeing {
-                ray: self.eye_ray(pixels[index / a_pixel], index % a_pixel),
-                sample: (index - samples.start) as u32,
-                throughput: Vec3::ONE,
-                path: Path::EYE,
-            })
-            .collect();
+        let mut generation = std::mem::take(&mut self.generation);
+        let mut vertices = std::mem::take(&mut self.vertices);
+        generation.extend(samples.clone().map(|index| Seeing {
+            ray: self.eye_ray(pixels[index / a_pixel], index % a_pixel),
+            sample: (index - samples.start) as u32,
+            throughput: Vec3::ONE,
+            path: Path::EYE,
+        }));
         self.done.statistics.rays.primary += generation.len() as u64;
         while !generation.is_empty() {
-            let vertices = self.see(&generation);
+            self.see(&generation, &mut vertices);
             for light in 0..self.scene.lights.len() {
                 self.ask(light, &vertices, |sample| (pixel_of(sample), pixels[pixel_of(sample)]));
             }
-            generation = self.spawn(&vertices);
+            self.spawn(&vertices, &mut generation);
         }
+        (self.generation, self.vertices) = (generation, vertices);
         // A pixel's samples are added in their order, which no batch cuts differently.
         for (offset, gathered) in self.gathered.iter().enumerate() {
             let pixel = pixel_of(offset as u32);
@@ -212,8 +217,8 @@ impl<'a> Unit<'a> {
     }
 
     /// Finds what the rays of a generation see; adds what shines by itself, and the background.
-    fn see(&mut self, generation: &[Seeing]) -> Vec<Vertex> {
-        let mut vertices = Vec::with_capacity(generation.len());
+    fn see(&mut self, generation: &[Seeing], vertices: &mut Vec<Vertex>) {
+        vertices.clear();
         for seeing in generation {
             let gathered = &mut self.gathered[seeing.sample as usize];
             let Some(hit) = self.backend.nearest(&seeing.ray, &mut self.done.statistics.nearest)
@@ -232,7 +237,6 @@ impl<'a> Unit<'a> {
                 path: seeing.path,
             });
         }
-        vertices
     }
 
     /// Asks whether one light reaches the vertices, and adds its light where it does.
@@ -332,8 +336,8 @@ impl<'a> Unit<'a> {
     }
 
     /// The next generation: mirrored and refracted rays.
-    fn spawn(&mut self, vertices: &[Vertex]) -> Vec<Seeing> {
-        let mut generation = Vec::new();
+    fn spawn(&mut self, vertices: &[Vertex], generation: &mut Vec<Seeing>) {
+        generation.clear();
         for vertex in vertices {
             let material = self.scene.material(vertex.triangle);
             if !material.is_specular() || vertex.path.level() >= self.settings.depth {
@@ -375,7 +379,6 @@ impl<'a> Unit<'a> {
                 push(Kind::Refracted, surface.origin_below(), direction, share);
             }
         }
-        generation
     }
 }
 

@@ -6,8 +6,8 @@ use super::policy::Prices;
 use crate::occlusion::Test;
 use crate::shadow::{Combination, Method, Prepared, SelfShadow, VerdictKind, VerdictSet};
 
-/// Nanoseconds a triangle to group triangles into clusters: 0.2 to 0.3 µs on two cores (docs/methods.md).
-const CLUSTERS: f64 = 300.0;
+/// Nanoseconds a triangle to group triangles into clusters: 0.15 to 0.25 µs on two cores (docs/methods.md).
+const CLUSTERS: f64 = 200.0;
 
 /// Nanoseconds a triangle to sort clusters by the directions of a light (docs/growth.md).
 const LIGHT_MAP: f64 = 10.0;

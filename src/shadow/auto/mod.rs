@@ -110,6 +110,18 @@ impl<'a> Auto<'a> {
         Ok(auto)
     }
 
+    /// The same, told that about so many queries are to come: what they are worth is prepared at once.
+    #[must_use]
+    pub fn expecting(self, queries: u64) -> Self {
+        self.policy.lock().unwrap_or_else(PoisonError::into_inner).expect(queries as f64);
+        self
+    }
+
+    /// Whether something that is not prepared yet may be worth it soon.
+    fn waits(&self) -> bool {
+        self.candidates.iter().any(|candidate| candidate.prepared.get().is_none())
+    }
+
     /// A candidate, made ready if it is not yet.
     fn prepared(&self, candidate: usize) -> &dyn Prepared {
         let Candidate { combination, prepared } = &self.candidates[candidate];

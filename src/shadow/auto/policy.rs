@@ -11,10 +11,14 @@
 //!    time spent is the price; for a light, as soon as its queries would have been cheaper by it. A
 //!    candidate that was never seen is taken to be cheap there, so that it gets a chance.
 //!
+//!    Told how many queries will come, it builds for the scene at once if half of what they would cost without is the
+//!    price (half, as that word may be too large), and else not before more have come than were said to.
+//!
 //! **Bound.** With costs that stay the same, the time of all queries is at most (2 + 1/√b) times that of the best single
 //! candidate in hindsight, building included, and (1 + 1/√b) times where nothing has to be built; and besides,
 //! one batch of each candidate. Rule 3 gives the 2: when a structure is bought for B, B was lost by not having it, and
-//! the best in hindsight has paid B or that. Rule 2 gives the rest. Costs that change are followed, as the estimates
+//! the best in hindsight has paid B or that; what is built on a true word costs half of the best at most. Rule 2 gives
+//! the rest. Costs that change are followed, as the estimates
 //! fade (`estimate`), without a bound.
 //!
 //! Karlin, Manasse, Rudolph, Sleator: Competitive Snoopy Caching. Algorithmica 3, 1988.
@@ -22,6 +26,9 @@
 use std::collections::HashMap;
 
 use super::estimate::Level;
+
+/// Part of the queries that are said to come that is counted on.
+const TRUSTED: f64 = 0.5;
 
 /// A batch counts for at most so many times what was expected: what takes longer was interrupted, by another
 /// program or by the system.
@@ -104,6 +111,9 @@ pub(super) struct Policy {
     scene: Level,
     lights: Vec<AtLight>,
     batches: f64,
+    /// Queries so far, and in all, if somebody said so.
+    queries: f64,
+    expected: f64,
     spent: f64,
     trials: f64,
 }
@@ -125,18 +135,30 @@ impl Policy {
             scene: Level::new(count),
             lights: (0..lights).map(|_| at_light()).collect(),
             batches: 0.0,
+            queries: 0.0,
+            expected: 0.0,
             spent: 0.0,
             trials: 0.0,
         }
     }
 
+    /// So many queries are to come in all.
+    pub fn expect(&mut self, queries: f64) {
+        self.expected = queries;
+    }
+
     /// The candidate that is worth preparing by now, if there is one.
     pub fn worth_preparing(&self) -> Option<usize> {
         let paid: f64 = self.prepared.iter().flatten().sum();
+        let worth = if self.queries < self.expected {
+            TRUSTED * self.spent * self.expected / self.queries.max(1.0)
+        } else {
+            self.spent
+        };
         let waiting = (0..self.prices.len()).filter(|&c| self.prepared[c].is_none());
         waiting
             .min_by(|&a, &b| self.prices[a].scene.total_cmp(&self.prices[b].scene))
-            .filter(|&c| self.batches > 0.0 && self.spent >= paid + self.prices[c].scene)
+            .filter(|&c| self.batches > 0.0 && worth >= paid + self.prices[c].scene)
     }
 
     /// A candidate has been prepared; those that share what it needed will cost less.
@@ -193,6 +215,7 @@ impl Policy {
             self.lights[light].accounts[candidate].trials += excess;
         }
         self.batches += 1.0;
+        self.queries += queries;
         self.spent += nanoseconds + building;
         for c in 0..self.prices.len() {
             if self.prices[c].light.is_none() {

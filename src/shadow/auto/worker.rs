@@ -1,11 +1,14 @@
 //! Answers the queries of one worker, and takes the time.
 
 use super::Auto;
-use super::policy::{Choice, Observation};
+use super::policy::{Choice, Observation, Reason};
 use crate::shadow::{Answer, ShadowQuery, ShadowTally, Shadows};
 
 /// Queries for which a choice stands: the time stamps and the choosing cost some hundred nanoseconds.
 const LEASE: usize = 256;
+
+/// Most queries of a call that go to one that is tried.
+const TRIED: usize = 512;
 
 /// A call with fewer queries than this may go untimed.
 const SHORT: usize = 64;
@@ -60,15 +63,20 @@ impl<'w, 'a> Worker<'w, 'a> {
     }
 }
 
-impl Shadows for Worker<'_, '_> {
-    fn answer(&mut self, light: usize, queries: &[ShadowQuery], answers: &mut [Answer]) {
-        assert_eq!(queries.len(), answers.len(), "one answer a query");
-        let Some(middle) = queries.get(queries.len() / 2) else { return };
+impl Worker<'_, '_> {
+    /// Answers with one candidate: all queries if it leads, some of them if it is tried or others wait to be
+    /// prepared. Says how many.
+    fn answer_some(
+        &mut self,
+        light: usize,
+        queries: &[ShadowQuery],
+        answers: &mut [Answer],
+    ) -> usize {
         let auto = self.auto;
         let lease = self.leases[light].get_or_insert_with(|| {
-            let place = auto.place(middle);
+            let place = auto.place(&queries[queries.len().min(TRIED) / 2]);
             Lease {
-                choice: auto.choose(light, place, queries.len().max(LEASE)),
+                choice: auto.choose(light, place, queries.len().clamp(LEASE, TRIED)),
                 place,
                 calls: 0,
                 asked: 0,
@@ -78,9 +86,12 @@ impl Shadows for Worker<'_, '_> {
             }
         });
         let candidate = lease.choice.candidate;
+        let tried = lease.choice.reason == Reason::Trial || (candidate == 0 && auto.waits());
+        let count = if tried { queries.len().min(TRIED) } else { queries.len() };
+        let (queries, answers) = (&queries[..count], &mut answers[..count]);
         let prepared = auto.prepared(candidate);
         let shadows = self.shadows[candidate].get_or_insert_with(|| prepared.worker());
-        if queries.len() >= SHORT || lease.calls.is_multiple_of(SAMPLED) {
+        if count >= SHORT || lease.calls.is_multiple_of(SAMPLED) {
             let (nanoseconds, building) = timed(
                 auto,
                 candidate,
@@ -92,17 +103,28 @@ impl Shadows for Worker<'_, '_> {
                     prepared.worker().answer(light, queries, &mut aside);
                 },
             );
-            lease.timed += queries.len();
+            lease.timed += count;
             lease.nanoseconds += nanoseconds;
             lease.building += building;
         } else {
             shadows.answer(light, queries, answers);
         }
         lease.calls += 1;
-        lease.asked += queries.len();
+        lease.asked += count;
         if lease.asked >= LEASE {
             Self::end(auto, light, lease);
             self.leases[light] = None;
+        }
+        count
+    }
+}
+
+impl Shadows for Worker<'_, '_> {
+    fn answer(&mut self, light: usize, queries: &[ShadowQuery], answers: &mut [Answer]) {
+        assert_eq!(queries.len(), answers.len(), "one answer a query");
+        let mut first = 0;
+        while first < queries.len() {
+            first += self.answer_some(light, &queries[first..], &mut answers[first..]);
         }
     }
 

@@ -19,6 +19,8 @@ struct World {
     light: Vec<f64>,
     lights: usize,
     places: u32,
+    /// Queries that the policy is told of.
+    expected: f64,
 }
 
 /// Batches over which a light's structure is built.
@@ -27,7 +29,7 @@ const BUILT_IN: f64 = 10.0;
 impl World {
     fn flat(cost: Cost, candidates: usize) -> Self {
         let nothing = vec![0.0; candidates];
-        Self { cost, scene: nothing.clone(), light: nothing, lights: 1, places: 1 }
+        Self { cost, scene: nothing.clone(), light: nothing, lights: 1, places: 1, expected: 0.0 }
     }
 
     fn policy(&self) -> Policy {
@@ -35,7 +37,10 @@ impl World {
             scene,
             light: (light > 0.0).then_some(light / BUILT_IN),
         };
-        Policy::new(self.scene.iter().zip(&self.light).map(price).collect(), self.lights)
+        let prices = self.scene.iter().zip(&self.light).map(price).collect();
+        let mut policy = Policy::new(prices, self.lights);
+        policy.expect(self.expected);
+        policy
     }
 
     /// Nanoseconds of so many batches, and how many of each light each candidate answered.
@@ -134,6 +139,26 @@ fn regret_is_a_factor_of_two_where_something_is_built_for_lights() {
             let hindsight = world.hindsight(batches);
             let bound = hindsight * (2.0 + share) + 2.0 * world.first_batches();
             assert!(total <= bound + begun.min(hindsight), "{price} {batches}: {total} of {bound}");
+        }
+    }
+}
+
+#[test]
+fn on_a_true_word_the_scene_is_prepared_at_once_and_regret_is_half_at_most() {
+    for cost in [|_, _, _, c| [500.0, 30.0][c], |_, _, _, c| [500.0, 500.0][c]] as [Cost; 2] {
+        for price in [1e3, 1e5, 1e7, 1e9] {
+            let mut world = World::flat(cost, 2);
+            world.scene = vec![0.0, price];
+            for batches in [10, 100, 1_000, 10_000, 100_000] {
+                world.expected = batches as f64 * BATCH;
+                let (total, answered) = world.run(batches);
+                let share = 1.0 / (batches as f64).sqrt();
+                let bound = world.hindsight(batches) * (1.5 + share) + 2.0 * world.first_batches();
+                assert!(total <= bound, "{price} {batches}: {total} of {bound}");
+                if price <= 0.5 * 500.0 * world.expected && cost(0, 0, 0, 1) < 100.0 {
+                    assert!(answered[0][0] <= 1 + batches / 10, "{price} {batches}: {answered:?}");
+                }
+            }
         }
     }
 }
