@@ -86,7 +86,12 @@ impl Engines {
         })
     }
 
-    fn contenders<'a>(&'a self, scene: &'a Scene, out: &[&str]) -> Vec<Contender<'a>> {
+    fn contenders<'a>(
+        &'a self,
+        scene: &'a Scene,
+        count: usize,
+        out: &[&str],
+    ) -> Vec<Contender<'a>> {
         let (grid, embree) = (&*self.grid.0, &self.embree.0);
         let method = move |combination: Combination| -> Box<dyn Fn() -> Answers<'a> + Sync + 'a> {
             Box::new(move || {
@@ -99,7 +104,8 @@ impl Engines {
                     "grid trace" => (self.grid.1, Box::new(move || Answers::Engine(grid))),
                     "auto" => {
                         let make = move || {
-                            Auto::new(Method::Trace, Test::Exact, scene, grid).expect("it goes")
+                            let auto = Auto::new(Method::Trace, Test::Exact, scene, grid);
+                            auto.expect("it goes").expecting(count as u64)
                         };
                         (self.grid.1, Box::new(move || Answers::Method(Box::new(make()))))
                     }
@@ -139,7 +145,7 @@ impl Out {
         threads: usize,
     ) -> Point {
         let queries = Queries::of(scene, &engines.embree.0, settings);
-        let contenders = engines.contenders(scene, &self.slow);
+        let contenders = engines.contenders(scene, queries.count, &self.slow);
         let costs = measure(&contenders, &queries, self.rounds, threads);
         let ours: Vec<usize> = costs
             .iter()
