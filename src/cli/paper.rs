@@ -27,8 +27,9 @@ in turns, a few milliseconds each; of each piece of the picture the least of all
 seconds, but its rates and gains are those of other pictures.
 
 --instructions counts instructions instead of time, which gives the same figures every time, whatever
-else the machine does. It runs umbra again under Valgrind, which must be installed: that takes some ten
-times as long as rendering once, and has no AVX-512, so the kernels for AVX2 are measured.
+else the machine does. It runs umbra again under Valgrind, which must be installed. That takes some sixty
+times as long as rendering once, so take a part: --every 36. Valgrind has no AVX-512; the kernels for AVX2
+are measured.
 
 --variants compares what else the paper mentions: the tolerance check, Woo's variant, forgetting at
 scanlines, serpentine scanlines, tiles, mailboxes, leaving out the spawner. 'a ray' is the work of all
