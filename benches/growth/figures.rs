@@ -12,6 +12,9 @@ use umbra::whole_file::write_whole;
 use super::contest::Costs;
 use super::curves::{CONTENDERS, Curve, Point};
 
+/// What a chart shows of a contender's costs.
+type Part = fn(&Costs) -> f64;
+
 /// Width of the charts.
 const WIDTH: f64 = 900.0;
 
@@ -32,7 +35,7 @@ fn look(name: &str) -> Look {
 pub fn write(folder: &Path, curve: &Curve, points: &[Point]) -> io::Result<()> {
     let file = |ending: &str| folder.join(format!("growth-{}.{ending}", curve.name));
     write_whole(&file("csv"), csv(curve, points).as_bytes())?;
-    let kinds: [(&str, &str, fn(&Costs) -> f64); 2] = [
+    let kinds: [(&str, &str, Part); 2] = [
         ("svg", "everything built", |costs| costs.then),
         ("with-building.svg", "building included", Costs::whole),
     ];
@@ -64,7 +67,7 @@ fn csv(curve: &Curve, points: &[Point]) -> String {
     text
 }
 
-fn chart(curve: &Curve, points: &[Point], what: &str, cost: fn(&Costs) -> f64) -> Chart {
+fn chart(curve: &Curve, points: &[Point], what: &str, cost: Part) -> Chart {
     let mut marks = Vec::new();
     let mut curves = Vec::new();
     let mut legend = Vec::new();
