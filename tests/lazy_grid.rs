@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use common::{Aim, Random, soup, sphere};
 use glam::Vec3;
+use umbra::geometry::lanes::Scalar;
 use umbra::geometry::{Ray, Triangle, Triangles};
 use umbra::occlusion::{
-    Backend, BuildOptions, Cell, Grid, GridOptions, LazyGrid, LeftOut, Occlusion, Tally, Test,
+    Backend, BuildOptions, Cell, DividedGrid, Grid, GridOptions, LeftOut, Occlusion, Tally, Test,
     Visit, Walk, build,
 };
 
@@ -74,7 +75,7 @@ fn it_stops_dividing_where_memory_ends_and_loses_nothing() {
     let mesh = teapot_in_a_stadium();
     let triangles = triangles(&mesh);
     let eager = engine(&triangles, GridOptions::default());
-    let bare = LazyGrid::new(&triangles, LAZY).memory() as u64;
+    let bare = DividedGrid::new(&triangles, LAZY).unwrap().memory() as u64;
     let mut held = Vec::new();
     for most in [bare, bare + 50_000, u64::MAX] {
         let lazy = engine(&triangles, GridOptions { most_bytes: Some(most), ..LAZY });
@@ -107,25 +108,25 @@ impl Visit for Counter {
 #[test]
 fn a_voxel_is_divided_on_the_first_visit_and_not_before() {
     let triangles = triangles(&teapot_in_a_stadium());
-    let grid = LazyGrid::new(&triangles, LAZY);
+    let grid = DividedGrid::new(&triangles, LAZY).unwrap();
     assert_eq!(grid.divided_count(), 0);
     let (far, near) = (Vec3::new(25.0, 25.0, 25.0), Vec3::new(3.0, 0.1, 0.0));
-    grid.walk(&Ray::between(far, far + Vec3::X), &mut Counter(0));
+    grid.walk::<Scalar<false, false>, _>(&Ray::between(far, far + Vec3::X), &mut Counter(0));
     assert_eq!(grid.divided_count(), 0, "nothing is crowded there");
     let before = grid.memory();
     let through_the_ball = Ray::between(near, Vec3::new(-3.0, 0.1, 0.0));
     let mut first = Counter(0);
-    grid.walk(&through_the_ball, &mut first);
+    grid.walk::<Scalar<false, false>, _>(&through_the_ball, &mut first);
     let divided = grid.divided_count();
     assert!(divided > 0 && grid.memory() > before);
     let mut second = Counter(0);
-    grid.walk(&through_the_ball, &mut second);
+    grid.walk::<Scalar<false, false>, _>(&through_the_ball, &mut second);
     assert_eq!((grid.divided_count(), second.0), (divided, first.0));
 
     // What a uniform grid cannot: few of the ball's triangles are met.
     let uniform = Grid::new(&triangles, GridOptions { nested: false, ..GridOptions::default() });
     let mut all = Counter(0);
-    uniform.walk(&through_the_ball, &mut all);
+    uniform.walk::<Scalar<false, false>, _>(&through_the_ball, &mut all);
     assert!(10 * second.0 < all.0, "{} of {}", second.0, all.0);
 }
 

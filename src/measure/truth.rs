@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::exact::{Verdict, certified, oracle};
+use crate::geometry::lanes::Scalar;
 use crate::geometry::{Ray, TriangleId, Triangles};
 use crate::occlusion::{Bvh2, Cell, Visit, Walk};
 
@@ -68,7 +69,10 @@ impl Truths {
     pub fn candidates(&self, ray: &Ray, each: impl FnMut(TriangleId) -> ControlFlow<()>) {
         if ray.is_valid() {
             let opaque = self.triangles.opaque_count();
-            self.walk.walk(ray, &mut Candidates { opaque, end: ray.end, each });
+            self.walk.walk::<Scalar<false, false>, _>(
+                ray,
+                &mut Candidates { opaque, end: ray.end, each },
+            );
         }
     }
 }

@@ -1,6 +1,7 @@
 //! No structure at all: every triangle, every time. The measure of the others' answers.
 
 use super::{Cell, Visit, Walk};
+use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 /// Triangles that form one cell.
@@ -23,7 +24,7 @@ impl Walk for Brute {
     const INLINED: bool = false;
 
     #[inline(always)]
-    fn walk<V: Visit + ?Sized>(&self, _: &Ray, visitor: &mut V) {
+    fn walk<L: Lanes, V: Visit + ?Sized>(&self, _: &Ray, visitor: &mut V) {
         visit_all(&self.order, BLOCK, visitor);
     }
 

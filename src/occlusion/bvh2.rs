@@ -13,6 +13,7 @@ use obvhs::{BvhBuildParams, fast_stack};
 use super::brute::visit_all;
 use super::culling_space::{CullingSpace, Passage};
 use super::{Cell, Visit, Walk};
+use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 /// A binary bounding volume hierarchy.
@@ -34,7 +35,7 @@ impl Bvh2 {
 
 impl Walk for Bvh2 {
     #[inline(always)]
-    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
+    fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
         let culled = match self.space.passage(ray) {
             Passage::Outside => return,
             Passage::Everything => return visit_all(&self.tree.primitive_indices, 8, visitor),

@@ -17,6 +17,7 @@ use obvhs::cwbvh::builder::build_cwbvh;
 use super::brute::visit_all;
 use super::culling_space::{CullingSpace, Passage};
 use super::{Cell, Visit, Walk};
+use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 /// Triangles that one node may hold: 8 leaves of up to 3.
@@ -41,7 +42,7 @@ impl Cwbvh {
 
 impl Walk for Cwbvh {
     #[inline(always)]
-    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
+    fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
         let culled = match self.space.passage(ray) {
             Passage::Outside => return,
             Passage::Everything => return visit_all(&self.tree.primitive_indices, 8, visitor),

@@ -193,7 +193,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for AnyOccluder<'_> {
         if !admit(ray, tally) {
             return None;
         }
-        let lanes = RayLanes::<L>::new(ray);
+        let lanes = RayLanes::<L>::of::<T>(ray);
         let triangles = &engine.triangles;
         let mut visitor =
             AnyVisitor::<T, L> { triangles, ray, lanes, tally, found: None, test: PhantomData };
@@ -201,9 +201,9 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for AnyOccluder<'_> {
             None => {
                 visitor.tally.traversals += 1;
                 if W::INLINED && L::COUNT > 4 {
-                    engine.walk.walk(ray, &mut visitor);
+                    engine.walk.walk::<L, _>(ray, &mut visitor);
                 } else {
-                    walk_any(&engine.walk, ray, &mut visitor);
+                    walk_any::<W, L>(&engine.walk, ray, &mut visitor);
                 }
             }
             Some(cell) => {
@@ -265,7 +265,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for One<'_> {
         if !admit(ray, tally) {
             return false;
         }
-        let lanes = RayLanes::<L>::new(ray);
+        let lanes = RayLanes::<L>::of::<T>(ray);
         let stop = |_| ControlFlow::Break(());
         test_each::<T, L>(&engine.triangles, ray, &lanes, &[triangle], tally, |_| true, stop)
             .is_break()
@@ -287,7 +287,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for AllTransparent<'_> {
             return;
         }
         self.tally.traversals += 1;
-        let lanes = RayLanes::<L>::new(self.ray);
+        let lanes = RayLanes::<L>::of::<T>(self.ray);
         let mut visitor = TransparentVisitor::<T, L> {
             triangles: &engine.triangles,
             job: self,
@@ -295,7 +295,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for AllTransparent<'_> {
             test: PhantomData,
         };
         let ray = visitor.job.ray;
-        walk_any(&engine.walk, ray, &mut visitor);
+        walk_any::<W, L>(&engine.walk, ray, &mut visitor);
     }
 }
 

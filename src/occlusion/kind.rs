@@ -3,7 +3,10 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::{Brute, Bvh2, Cwbvh, Engine, Grid, GridOptions, LazyGrid, Occlusion, Walk};
+use super::{
+    Brute, Bvh2, Cwbvh, DividedGrid, Engine, Grid, GridOptions, NestedGrid, Occlusion, TooFine,
+    Walk,
+};
 use crate::exact::Exact;
 use crate::geometry::Triangles;
 use crate::geometry::intersect::{Moller, Pluecker, Watertight};
@@ -112,6 +115,9 @@ pub enum BackendError {
     #[cfg(feature = "embree")]
     #[error(transparent)]
     Embree(#[from] embree_ffi::Error),
+    /// The grid cannot be as fine as was asked for.
+    #[error(transparent)]
+    TooFine(#[from] TooFine),
     /// Embree decides by its own arithmetic.
     #[error(
         "embree has no test '{0}': its own are pluecker (robust mode) and moller (default mode)"
@@ -122,7 +128,7 @@ pub enum BackendError {
 /// Builds a backend over the triangles; over none, one that nothing blocks.
 ///
 /// # Errors
-/// If the backend is not to be had here.
+/// If the backend is not to be had here, or not as fine.
 pub fn build(
     backend: Backend,
     test: Test,
@@ -130,14 +136,26 @@ pub fn build(
     options: &BuildOptions,
 ) -> Result<Box<dyn Occlusion>, BackendError> {
     Ok(match backend {
-        Backend::Grid if options.grid.lazy => {
-            engine(test, triangles, LazyGrid::new(triangles, options.grid), options)
-        }
-        Backend::Grid => engine(test, triangles, Grid::new(triangles, options.grid), options),
+        Backend::Grid => grid(test, triangles, options)?,
         Backend::Bvh2 => engine(test, triangles, Bvh2::new(triangles), options),
         Backend::Cwbvh => engine(test, triangles, Cwbvh::new(triangles), options),
         Backend::Brute => engine(test, triangles, Brute::new(triangles), options),
         Backend::Embree => embree(test, triangles, options)?,
+    })
+}
+
+fn grid(
+    test: Test,
+    triangles: &Arc<Triangles>,
+    options: &BuildOptions,
+) -> Result<Box<dyn Occlusion>, BackendError> {
+    let GridOptions { resolution, nested, lazy, .. } = options.grid;
+    Ok(if lazy || (nested && resolution.is_some()) {
+        engine(test, triangles, DividedGrid::new(triangles, options.grid)?, options)
+    } else if nested {
+        engine(test, triangles, NestedGrid::new(triangles), options)
+    } else {
+        engine(test, triangles, Grid::of_resolution(triangles, options.grid)?, options)
     })
 }
 

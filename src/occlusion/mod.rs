@@ -35,7 +35,7 @@ pub use cwbvh::Cwbvh;
 #[cfg(feature = "embree")]
 pub use embree::{Embree, EmbreeOptions, Isa, PacketWidth, Quality};
 pub use engine::Engine;
-pub use grid::{Grid, GridOptions, LazyGrid};
+pub use grid::{DividedGrid, Grid, GridOptions, NestedGrid, TooFine};
 pub(crate) use grid::{Level, Steps};
 pub use kind::{Backend, BackendError, BuildOptions, Test, build};
 pub use left_out::LeftOut;

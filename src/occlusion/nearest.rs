@@ -46,12 +46,16 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for NearestHit<'_> {
         let mut visitor = NearestVisitor::<T, L> {
             triangles: engine.triangles(),
             ray,
-            lanes: RayLanes::new(ray),
+            lanes: RayLanes::of::<T>(ray),
             tally,
             best: None,
             test: PhantomData,
         };
-        walk_any(engine.walk(), ray, &mut visitor);
+        if W::INLINED && L::COUNT > 4 {
+            engine.walk().walk::<L, _>(ray, &mut visitor);
+        } else {
+            walk_any::<W, L>(engine.walk(), ray, &mut visitor);
+        }
         visitor.best
     }
 }

@@ -32,7 +32,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for SparingOccluder<'_> {
         let mut visitor = SparingVisitor::<T, L> {
             triangles: engine.triangles(),
             ray,
-            lanes: RayLanes::new(ray),
+            lanes: RayLanes::of::<T>(ray),
             left_out,
             tally,
             found: None,
@@ -41,7 +41,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for SparingOccluder<'_> {
         match within {
             None => {
                 visitor.tally.traversals += 1;
-                walk_any(engine.walk(), ray, &mut visitor);
+                walk_any::<W, L>(engine.walk(), ray, &mut visitor);
             }
             Some(cell) => {
                 let run = &engine.walk().order()[cell.start as usize..cell.end as usize];

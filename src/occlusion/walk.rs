@@ -1,9 +1,11 @@
 //! Culling: which triangles might a ray meet?
 
+use std::marker::PhantomData;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::Cell;
+use crate::geometry::lanes::{Kernel, Lanes};
 use crate::geometry::{Ray, TriangleId};
 
 /// Takes the triangles that a culler could not rule out.
@@ -21,12 +23,12 @@ pub trait Visit {
 /// of, along every axis, is visited, for any valid ray of any length, direction and origin; more may be, and
 /// several times. So tests that round lose no hit that counts, and the exact test none at all.
 pub trait Walk: Send + Sync + 'static {
-    /// Whether any-hit queries get a copy of the walk of their own for each triangle test and each wide
-    /// instruction set, with the test inlined; costs some seconds of compilation each.
+    /// Whether queries for any hit and for the nearest get a copy of the walk of their own for each triangle test and each
+    /// wide instruction set, with the test inlined; costs some seconds of compilation each.
     const INLINED: bool = true;
 
-    /// Visits what the ray might meet, nearer parts mostly first.
-    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V);
+    /// Visits what the ray might meet, nearer parts mostly first; lanes of whatever kind serve the culling.
+    fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V);
 
     /// The triangles in an order that keeps each cell together.
     fn order(&self) -> &[TriangleId];
@@ -39,8 +41,8 @@ impl<W: Walk> Walk for Arc<W> {
     const INLINED: bool = false;
 
     #[inline(always)]
-    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
-        W::walk(self, ray, visitor);
+    fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
+        W::walk::<L, V>(self, ray, visitor);
     }
 
     fn order(&self) -> &[TriangleId] {
@@ -52,9 +54,24 @@ impl<W: Walk> Walk for Arc<W> {
     }
 }
 
-/// A walk that is compiled once for a culler, whatever visits: for queries that are not worth a copy of
-/// the walk for each triangle test and instruction set. Costs a virtual call a cell.
-#[inline(never)]
-pub(super) fn walk_any<W: Walk>(walk: &W, ray: &Ray, visitor: &mut dyn Visit) {
-    walk.walk(ray, visitor);
+/// A walk that is compiled once for a culler and an instruction set, whatever visits: for queries that are not worth a
+/// copy of the walk for each triangle test. Costs a virtual call a cell.
+pub(super) fn walk_any<W: Walk, L: Lanes>(walk: &W, ray: &Ray, visitor: &mut dyn Visit) {
+    L::run(WalkAny::<W, L> { walk, ray, visitor, lanes: PhantomData });
+}
+
+struct WalkAny<'a, W, L> {
+    walk: &'a W,
+    ray: &'a Ray,
+    visitor: &'a mut dyn Visit,
+    lanes: PhantomData<L>,
+}
+
+impl<W: Walk, L: Lanes> Kernel for WalkAny<'_, W, L> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.walk.walk::<L, dyn Visit>(self.ray, self.visitor);
+    }
 }

@@ -72,9 +72,12 @@ impl Surface {
     /// Radiance towards the eye from one light, shadows apart.
     pub(super) fn shade(&self, material: &Material, light: &Illumination) -> Vec3 {
         let cosine = self.shading_normal.dot(light.direction);
+        let diffuse = material.diffuse * (cosine * std::f32::consts::FRAC_1_PI);
+        if material.highlight == Vec3::ZERO {
+            return light.irradiance * diffuse;
+        }
         let mirrored = self.incoming.reflect(self.shading_normal);
         let highlight = mirrored.dot(light.direction).max(0.0).powf(material.shininess);
-        let diffuse = material.diffuse * (cosine * std::f32::consts::FRAC_1_PI);
         light.irradiance * (diffuse + material.highlight * highlight)
     }
 

@@ -17,7 +17,7 @@ use super::shading::{Surface, offset_of};
 use super::{Answered, Progress, Settings, Statistics};
 use crate::geometry::{Ray, TriangleId};
 use crate::occlusion::{Occlusion, Tally};
-use crate::scene::Scene;
+use crate::scene::{Illumination, Scene};
 use crate::shadow::{Answer, Attenuation, Path, Prepared, ShadowQuery, Shadows, Verdict};
 
 /// Rays that carry less than this share of a pixel's light are not followed.
@@ -69,7 +69,8 @@ pub(super) struct Unit<'a> {
     /// Radiance that each sample of the batch has gathered.
     gathered: Vec<Vec3>,
     done: Done,
-    queries: Vec<(ShadowQuery, u32)>,
+    /// What is asked, of which vertex, and the light that it is about.
+    queries: Vec<(ShadowQuery, u32, Illumination)>,
     asked: Vec<ShadowQuery>,
     answers: Vec<Answer>,
     /// What each answer cost, if that is to be shown.
@@ -248,19 +249,19 @@ impl<'a> Unit<'a> {
             if material.diffuse == Vec3::ZERO && material.highlight == Vec3::ZERO {
                 continue;
             }
-            let lit = source.illuminate(vertex.surface.point);
-            if lit.is_some_and(|light| vertex.surface.faces(&light)) {
+            let Some(illumination) = source.illuminate(vertex.surface.point) else { continue };
+            if vertex.surface.faces(&illumination) {
                 let origin = match self.leaves_out_spawner {
                     true => vertex.surface.point.as_vec3(),
                     false => vertex.surface.origin_above(),
                 };
                 let ray = source.shadow_ray(origin);
                 let query = ShadowQuery { ray, path: vertex.path, spawner: vertex.triangle };
-                self.queries.push((query, index as u32));
+                self.queries.push((query, index as u32, illumination));
             }
         }
         self.asked.clear();
-        self.asked.extend(self.queries.iter().map(|(query, _)| *query));
+        self.asked.extend(self.queries.iter().map(|(query, ..)| *query));
         self.answers.clear();
         self.answers.resize(self.asked.len(), Answer::default());
         let shown = self.settings.answers.is_some_and(|shown| shown.includes(light));
@@ -270,7 +271,8 @@ impl<'a> Unit<'a> {
         let transparent = self.scene.has_transparent();
         self.look_for_glass(light);
         let mut clear = self.clear.iter();
-        for (asked, (&(query, index), answer)) in self.queries.iter().zip(&self.answers).enumerate()
+        for (asked, (&(query, index, illumination), answer)) in
+            self.queries.iter().zip(&self.answers).enumerate()
         {
             let vertex = &vertices[index as usize];
             let (pixel_index, place) = pixel(vertex.sample);
@@ -292,8 +294,6 @@ impl<'a> Unit<'a> {
             if answer.blocked {
                 continue;
             }
-            let illumination =
-                source.illuminate(vertex.surface.point).expect("it was asked because it is lit");
             let mut radiance =
                 vertex.surface.shade(self.scene.material(vertex.triangle), &illumination);
             if transparent && clear.next() != Some(&Some(false)) {

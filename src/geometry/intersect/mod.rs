@@ -32,19 +32,30 @@ pub struct RayLanes<L> {
     pub direction: Vector<L>,
     /// End of the interval.
     pub end: L,
-    /// What [`Watertight`] needs; computed only where it is used, as everything here is inlined.
+    /// What [`Watertight`] needs; nothing where it is not asked for.
     pub shear: Shear<L>,
 }
 
 impl<L: Lanes> RayLanes<L> {
-    /// The ray in every lane.
+    /// The ray in every lane, for any test.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
+        Self { shear: Shear::new(ray), ..Self::without_shear(ray) }
+    }
+
+    /// The ray in every lane, with what one test needs.
+    #[inline(always)]
+    pub fn of<T: TriangleTest>(ray: &Ray) -> Self {
+        if T::SHEARS { Self::new(ray) } else { Self::without_shear(ray) }
+    }
+
+    #[inline(always)]
+    fn without_shear(ray: &Ray) -> Self {
         Self {
             origin: splat(ray.origin),
             direction: splat(ray.direction),
             end: L::splat(ray.end),
-            shear: Shear::new(ray),
+            shear: Shear::none(),
         }
     }
 }
@@ -55,6 +66,9 @@ impl<L: Lanes> RayLanes<L> {
 /// rare lanes are left to the scalar [`settle`](Self::settle). A backend tests a triangle only by
 /// these two, so any backend whose culling is conservative gives the same answers.
 pub trait TriangleTest: Copy + Default + Send + Sync + 'static {
+    /// Whether it needs the shear of [`RayLanes`].
+    const SHEARS: bool = false;
+
     /// Tests as many triangles as `L` has lanes. The ray is valid ([`Ray::is_valid`]).
     fn claims<L: Lanes>(ray: &RayLanes<L>, corners: &[Vector<L>; 3]) -> Claims;
 

@@ -49,6 +49,12 @@ impl<L: Lanes> Shear<L> {
         }
     }
 
+    /// For tests that do without.
+    #[inline(always)]
+    pub(super) fn none() -> Self {
+        Self { axes: [0, 1, 2], x: L::splat(0.0), y: L::splat(0.0), z: L::splat(0.0) }
+    }
+
     /// A corner, moved to the origin and sheared; z is not yet scaled.
     #[inline(always)]
     fn apply(&self, ray: &RayLanes<L>, corner: Vector<L>) -> Vector<L> {
@@ -80,6 +86,8 @@ impl<L: Lanes> Sheared<L> {
 }
 
 impl TriangleTest for Watertight {
+    const SHEARS: bool = true;
+
     /// Opens every lane whose edges are not surely on both sides of the ray.
     #[inline(always)]
     fn claims<L: Lanes>(ray: &RayLanes<L>, corners: &[Vector<L>; 3]) -> Claims {

@@ -19,7 +19,7 @@ use embree_ffi::{Hit, Ray as EmbreeRay, Scene, Verdict};
 
 use super::embree_bounds::at_least;
 use super::nearest::distance;
-use super::{Cell, Grid, GridOptions, LeftOut, Nearest, Occluder, Occlusion, Tally};
+use super::{Cell, LeftOut, Nearest, NestedGrid, Occluder, Occlusion, Tally};
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 pub use build::{EmbreeOptions, Isa, PacketWidth, Quality};
@@ -43,7 +43,7 @@ pub struct Embree {
 
 /// The grid whose voxels stand in for Embree's leaves.
 struct Companion {
-    grid: Arc<Grid>,
+    grid: Arc<NestedGrid>,
     /// The grid with the lower bound of Embree's answer as its test.
     at_least: Box<dyn Occlusion>,
 }
@@ -77,7 +77,7 @@ impl Embree {
 
     fn companion(&self) -> &Companion {
         self.companion.get_or_init(|| {
-            let grid = Arc::new(Grid::new(&self.triangles, GridOptions::default()));
+            let grid = Arc::new(NestedGrid::new(&self.triangles));
             let at_least =
                 at_least(&self.triangles, grid.clone(), self.robust, self.options.arithmetic());
             Companion { grid, at_least }

@@ -1,33 +1,38 @@
 //! The grid: voxels with lists of triangles, walked in order along the ray.
 //!
-//! A uniform grid is fast to build, and its voxels are the neighbourhoods that the paper's caches
-//! remember; but one resolution cannot serve a scene with uneven detail. So a voxel that is crowded is
-//! divided by a grid of its own, and so on (adaptive voxel subdivision, Jevans & Wyvill 1989), unless a
-//! plain uniform grid is asked for.
+//! A uniform grid ([`Grid`]) is fast to build, and its voxels are the neighbourhoods that the paper's caches
+//! remember; but one resolution cannot serve a scene with uneven detail. So a crowded voxel holds a grid of its own, and so
+//! on (adaptive voxel subdivision, Jevans & Wyvill 1989): [`NestedGrid`] is that from the scene's box down, with small
+//! grids whose voxels a ray finds all at once; [`DividedGrid`] is a uniform grid of a given resolution with nested grids
+//! in its crowded voxels, beforehand or when a ray first comes.
 //!
 //! Exact, because nothing is lost: a triangle is listed in every voxel that it comes within
-//! [`PADDING`] of a voxel's side of (`voxelize`), and the walk errs by much less (`walk`): wherever
-//! rounding makes it pass a corner on the wrong side, the voxel it takes instead lists the triangle too.
+//! [`PADDING`] of a voxel's side of (`voxelize`), and the walk errs by much less (`steps`): wherever
+//! rounding makes it pass a corner on the wrong side, the voxel it takes instead lists the triangle too. Nested grids
+//! have a padding of their own.
 //!
 //! Fujimoto, Tanaka, Iwata: ARTS: Accelerated Ray-Tracing System. IEEE CG&A 6(4), 1986.
 //! Amanatides, Woo: A Fast Voxel Traversal Algorithm for Ray Tracing. Eurographics 1987.
 //! Jevans, Wyvill: Adaptive Voxel Subdivision for Ray Tracing. Graphics Interface 1989.
 
 mod build;
-mod lazy;
+mod divided;
 mod level;
+mod nested;
 mod steps;
 mod voxelize;
-mod walk;
 
 use glam::DVec3;
-pub use lazy::LazyGrid;
-use level::Content;
+
+pub use divided::DividedGrid;
 pub(crate) use level::Level;
+pub use nested::NestedGrid;
 pub(crate) use steps::Steps;
 
+use super::brute::visit_all;
 use super::clip::{Clip, clip, padding};
 use super::{Cell, Visit, Walk};
+use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 /// How far outside a voxel its triangles may be, as a part of its side.
@@ -36,12 +41,15 @@ const PADDING: f64 = 1.0 / 1024.0;
 /// Voxels to a triangle of a plain uniform grid, where nothing else is asked for.
 const UNIFORM_DENSITY: f64 = 4.0;
 
-/// Voxels to a triangle of the outermost grid where crowded voxels are divided.
+/// Voxels to a triangle of a grid whose crowded voxels are divided.
 const NESTED_DENSITY: f64 = 0.5;
 
-/// Voxels that a triangle may lie in, on average: where many large triangles lie on each other there would be
-/// more, and the grid is made coarser until there are not.
+/// Voxels that a triangle may lie in, on average, where no resolution is asked for: where many large triangles lie
+/// on each other there would be more, and the grid is made coarser until there are not.
 const MOST_ENTRIES: usize = 64;
+
+/// Entries of a grid whose resolution is asked for: they take 4 GiB.
+const MOST_ENTRIES_ASKED: usize = 1 << 30;
 
 /// Most voxels along one axis.
 const MOST_VOXELS: f64 = 1024.0;
@@ -49,8 +57,7 @@ const MOST_VOXELS: f64 = 1024.0;
 /// How finely the grid divides the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridOptions {
-    /// Voxels along x, y and z of the outermost grid; if none are given, a number that suits the number
-    /// of triangles, as near to cubes as the scene's box allows.
+    /// Voxels along x, y and z of the outermost grid; if none are given, what suits the triangles.
     pub resolution: Option<[u32; 3]>,
     /// Whether crowded voxels are divided.
     pub nested: bool,
@@ -77,52 +84,74 @@ impl GridOptions {
     }
 }
 
-/// A grid over the triangles' box, and grids in its crowded voxels.
+/// A grid of this resolution would have too many entries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "a grid of {}x{}x{} voxels would list triangles some {entries} times, which is more than {MOST_ENTRIES_ASKED}; give --grid fewer voxels",
+    .resolution[0], .resolution[1], .resolution[2]
+)]
+pub struct TooFine {
+    /// Voxels along x, y and z.
+    pub resolution: [u32; 3],
+    /// Entries that there would be, from those of the triangles that were tried.
+    pub entries: u64,
+}
+
+/// A uniform grid over the triangles' box.
 pub struct Grid {
-    min: DVec3,
+    level: Level,
     max: DVec3,
-    /// The outermost grid first.
-    levels: Vec<Level>,
-    /// The voxels of all levels.
-    voxels: Vec<Content>,
+    /// By voxel: one more than the number of its list; 0 if it is empty.
+    lists: Vec<u32>,
     /// Where in `order` each list starts; one more than there are lists.
     starts: Vec<u32>,
     order: Vec<TriangleId>,
 }
 
 impl Grid {
-    /// Sorts the triangles into voxels, in parallel. Without triangles, it is a grid of nothing.
+    /// Sorts the triangles into voxels, in parallel. Without triangles, it is a grid of nothing. Where there would be too
+    /// many entries, it is coarser than asked for.
     #[must_use]
     pub fn new(triangles: &Triangles, options: GridOptions) -> Self {
-        let density = if options.nested { NESTED_DENSITY } else { UNIFORM_DENSITY };
-        Self::fitting(triangles, options.resolution, density, options.nested)
-    }
-
-    /// The outermost grid alone of one whose crowded voxels are to be divided.
-    fn undivided(triangles: &Triangles, resolution: Option<[u32; 3]>) -> Self {
-        Self::fitting(triangles, resolution, NESTED_DENSITY, false)
-    }
-
-    /// A grid of the given resolution or with `density` voxels to a triangle; coarser if there were too many entries.
-    fn fitting(
-        triangles: &Triangles,
-        mut resolution: Option<[u32; 3]>,
-        density: f64,
-        nested: bool,
-    ) -> Self {
-        // What was asked for is kept as long as places fit their 32 bits.
-        let most =
-            if resolution.is_some() { u32::MAX as usize } else { MOST_ENTRIES * triangles.len() };
+        let mut options = options;
         loop {
-            let outermost = Self::place(triangles, resolution, density);
-            match build::build(triangles, outermost, nested, most) {
+            match Self::of_resolution(triangles, options) {
                 Ok(grid) => return grid,
-                Err(build::TooFine(tried)) => resolution = Some(tried.map(|n| n.div_ceil(2))),
+                Err(TooFine { resolution, .. }) => {
+                    options.resolution = Some(resolution.map(|n| n.div_ceil(2)));
+                }
             }
         }
     }
 
-    /// Where an outermost grid is, of the given resolution or with `density` voxels to a triangle.
+    /// The same, but a resolution that is asked for is kept.
+    ///
+    /// # Errors
+    /// If there would be too many entries.
+    pub fn of_resolution(triangles: &Triangles, options: GridOptions) -> Result<Self, TooFine> {
+        let density = if options.nested { NESTED_DENSITY } else { UNIFORM_DENSITY };
+        match options.resolution {
+            Some(_) => {
+                let level = Self::place(triangles, options.resolution, density);
+                build::build(triangles, level, MOST_ENTRIES_ASKED)
+            }
+            None => {
+                let most = MOST_ENTRIES * triangles.len();
+                let mut resolution = None;
+                loop {
+                    let level = Self::place(triangles, resolution, density);
+                    match build::build(triangles, level, most) {
+                        Err(tried) => {
+                            resolution = Some(tried.resolution.map(|n| n.div_ceil(2)));
+                        }
+                        fits => return fits,
+                    }
+                }
+            }
+        }
+    }
+
+    /// Where a grid is, of the given resolution or with `density` voxels to a triangle.
     fn place(triangles: &Triangles, resolution: Option<[u32; 3]>, density: f64) -> Level {
         let bounds = triangles.bounds().unwrap_or_default();
         let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
@@ -136,52 +165,30 @@ impl Grid {
         Level::new(min, max, resolution, &bounds)
     }
 
-    /// Voxels along x, y and z of the outermost grid.
+    /// Voxels along x, y and z.
     #[must_use]
     pub fn resolution(&self) -> [u32; 3] {
-        self.levels[0].resolution
+        self.level.resolution
     }
 
-    /// The corner of a voxel of the outermost grid with the least coordinates.
-    #[must_use]
-    pub fn corner(&self, voxel: [u32; 3]) -> DVec3 {
-        self.levels[0].corner(voxel)
-    }
-
-    /// Number of voxels, those of nested grids included.
+    /// Number of voxels.
     #[must_use]
     pub fn voxel_count(&self) -> usize {
-        self.voxels.len()
+        self.lists.len()
     }
 
-    /// Number of grids: one, and those in crowded voxels.
-    #[must_use]
-    pub fn grid_count(&self) -> usize {
-        self.levels.len()
+    /// Where the voxels are.
+    pub(crate) fn level(&self) -> &Level {
+        &self.level
     }
 
-    /// The innermost voxel that holds a point of the scene's box; the nearest one for a point outside.
-    #[must_use]
-    pub fn cell_at(&self, point: DVec3) -> Cell {
-        let mut level = &self.levels[0];
-        loop {
-            let content = self.voxels[level.index(level.voxel_of(point))];
-            match content.nested() {
-                Some(nested) => level = &self.levels[nested],
-                None => return self.cell(content),
-            }
-        }
-    }
-
-    /// Where the voxels of the outermost grid are.
-    pub(crate) fn outermost(&self) -> &Level {
-        &self.levels[0]
-    }
-
-    /// What an outermost voxel that is not divided lists; opaque triangles first, in ascending order.
+    /// What a voxel lists; opaque triangles first, in ascending order.
     #[inline(always)]
     pub(crate) fn listed(&self, index: usize) -> Cell {
-        self.cell(self.voxels[index])
+        match self.list_of(index) {
+            Some(list) => Cell { start: self.starts[list], end: self.starts[list + 1] },
+            None => Cell::default(),
+        }
     }
 
     /// Number of lists.
@@ -189,32 +196,39 @@ impl Grid {
         self.starts.len() - 1
     }
 
-    /// The number of the list of an outermost voxel, if it holds anything and is not divided.
+    /// The number of the list of a voxel, if it holds anything.
     #[inline(always)]
     fn list_of(&self, index: usize) -> Option<usize> {
-        self.voxels[index].list()
+        (self.lists[index] as usize).checked_sub(1)
     }
 
     /// The part of a ray that is in the grid.
     #[inline]
     pub(crate) fn clip(&self, ray: &Ray) -> Clip {
-        clip(ray, self.min, self.max)
-    }
-
-    /// The list of a voxel that is not divided.
-    #[inline(always)]
-    fn cell(&self, content: Content) -> Cell {
-        match content.list() {
-            Some(list) => Cell { start: self.starts[list], end: self.starts[list + 1] },
-            None => Cell::default(),
-        }
+        clip(ray, self.level.min, self.max)
     }
 }
 
 impl Walk for Grid {
     #[inline(always)]
-    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
-        walk::walk(self, ray, visitor);
+    fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
+        let (enter, leave) = match self.clip(ray) {
+            Clip::Outside => return,
+            Clip::Everything => return visit_all(&self.order, 8, visitor),
+            Clip::Inside(enter, leave) => (enter, leave),
+        };
+        for step in Steps::new(&self.level, ray, enter, leave) {
+            let cell = self.listed(step.index);
+            if cell.start < cell.end {
+                let run = &self.order[cell.start as usize..cell.end as usize];
+                if visitor.visit(cell, run).is_break() {
+                    return;
+                }
+            }
+            if step.leave > f64::from(visitor.end()) {
+                return;
+            }
+        }
     }
 
     fn order(&self) -> &[TriangleId] {
@@ -222,10 +236,7 @@ impl Walk for Grid {
     }
 
     fn memory(&self) -> usize {
-        size_of_val(&*self.levels)
-            + size_of_val(&*self.voxels)
-            + size_of_val(&*self.starts)
-            + size_of_val(&*self.order)
+        size_of_val(&*self.lists) + size_of_val(&*self.starts) + size_of_val(&*self.order)
     }
 }
 

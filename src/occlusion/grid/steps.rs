@@ -1,7 +1,8 @@
-//! The voxels of the outermost grid along a ray, empty ones included, for whoever asks about voxels and
-//! not only about what they hold.
+//! The voxels of a uniform grid along a ray, empty ones included (Amanatides & Woo 1987).
 //!
-//! The arithmetic is that of `walk`: in f64, each plane's `t` afresh from its index.
+//! In f64, and each plane's `t` is computed afresh from its index, so that errors do not add up. An
+//! error of `t` displaces the walk by a few 2⁻⁵² of the coordinates, against a padding of 2⁻¹⁰ of a
+//! voxel's side and at least 2⁻¹⁷ of the coordinates: a factor of billions.
 
 use glam::DVec3;
 
@@ -13,7 +14,7 @@ use crate::geometry::Ray;
 pub(crate) struct Step {
     /// Its place along x, y and z.
     pub voxel: [u32; 3],
-    /// Its place among those of all grids.
+    /// Its place among all.
     pub index: usize,
     /// `t` at which the ray leaves it.
     pub leave: f64,

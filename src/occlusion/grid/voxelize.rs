@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::Level;
 use crate::geometry::{Triangle, is_finite};
 
-/// Calls `found` with every voxel, counted from the grid's first, that the triangle comes within the
+/// Calls `found` with the place of every voxel that the triangle comes within the
 /// padding of; with none if the triangle is not finite.
 pub(super) fn overlapped(level: &Level, triangle: &Triangle, mut found: impl FnMut(usize)) {
     if !is_finite(triangle) {
@@ -21,16 +21,15 @@ pub(super) fn overlapped(level: &Level, triangle: &Triangle, mut found: impl FnM
     let low = corners[0].min(corners[1]).min(corners[2]) - pad;
     let high = corners[0].max(corners[1]).max(corners[2]) + pad;
     let (low, high) = (level.voxel_of(low), level.voxel_of(high));
-    let local = |voxel| level.index(voxel) - level.first;
     if low == high {
-        return found(local(low));
+        return found(level.index(low));
     }
     let axes = SeparatingAxes::new(&corners, 0.5 * level.side + pad);
     for z in low[2]..=high[2] {
         for y in low[1]..=high[1] {
             for x in low[0]..=high[0] {
                 if axes.overlap(level.corner([x, y, z]) + 0.5 * level.side) {
-                    found(local([x, y, z]));
+                    found(level.index([x, y, z]));
                 }
             }
         }

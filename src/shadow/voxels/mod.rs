@@ -111,7 +111,7 @@ impl Voxels {
     }
 
     pub fn level(&self) -> &Level {
-        self.grid.outermost()
+        self.grid.level()
     }
 
     pub fn memory(&self) -> usize {

@@ -7,7 +7,7 @@ use crate::exact::random::Random;
 use crate::geometry::{Triangle, Triangles};
 use crate::measure::extremes::mesh::{rounded, soup, sphere, square};
 use crate::measure::extremes::shot::{Range, segment, through};
-use crate::occlusion::{Grid, GridOptions};
+use crate::occlusion::NestedGrid;
 
 /// A turn about two axes by angles of Pythagorean triangles, so that no function of a library has to round.
 const TILT: DMat3 = DMat3::from_cols_array(&[
@@ -166,11 +166,12 @@ pub(super) fn ends(cases: &mut Vec<Case>) {
     }));
 }
 
-fn grid_over(triangles: &[Triangle]) -> Grid {
-    Grid::new(&triangles.iter().copied().collect::<Triangles>(), GridOptions::default())
+fn grid_over(triangles: &[Triangle]) -> NestedGrid {
+    NestedGrid::new(&triangles.iter().copied().collect::<Triangles>())
 }
 
-/// A corner of a voxel of the outermost grid.
-fn wall_corner(grid: &Grid, random: &mut Random) -> DVec3 {
-    grid.corner(grid.resolution().map(|n| random.below(n as usize + 1) as u32))
+/// A corner of a voxel of any of the grids.
+fn wall_corner(grid: &NestedGrid, random: &mut Random) -> DVec3 {
+    let corner = [0; 3].map(|_: u32| random.below(5) as u32);
+    grid.corner(random.below(grid.grid_count()), corner)
 }

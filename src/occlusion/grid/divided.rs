@@ -1,14 +1,15 @@
-//! The grid whose crowded voxels are divided when a ray first comes to one (Jevans & Wyvill 1989).
+//! The uniform grid whose crowded voxels hold grids of their own: from the beginning, or from when a ray first comes to one
+//! (Jevans & Wyvill 1989).
 //!
-//! Wins where rays come to a small part of a large scene: what no ray comes to is never divided. Loses
-//! to the grid that is divided beforehand where they come everywhere: a voxel's grid is found through a
-//! cell of its own, and the lists inside are no runs of one order. So a cache of voxels remembers the
-//! outer voxel, if it is not too large, and else none.
+//! For whoever asks for a resolution, and for scenes of which rays come to a small part: what no ray comes to
+//! is never divided. Loses to the grid that is nested from the scene's box down: empty voxels are stepped
+//! through, a voxel's grid is found through a cell of its own, and the lists inside are no runs of one
+//! order. So a cache of voxels remembers the outer voxel, if it is not too large, and else none.
 //!
 //! Sound under threads: a voxel's cell is written once, and whoever comes while another thread divides
 //! it waits. What a voxel is divided into depends on its triangles alone, so it does not matter which
 //! ray comes first, unless memory runs out: then voxels stay as they are. Exact for the reasons that the other
-//! grid is.
+//! grids are.
 //!
 //! Jevans, Wyvill: Adaptive Voxel Subdivision for Ray Tracing. Graphics Interface 1989.
 
@@ -16,13 +17,18 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 
-use super::build::{CROWDED, divide};
-use super::walk::walk;
-use super::{Grid, GridOptions, Steps};
-use crate::geometry::{Bounds, Ray, TriangleId, Triangles};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{Grid, GridOptions, NestedGrid, Steps, TooFine};
+use crate::geometry::lanes::Lanes;
+use crate::geometry::{Ray, TriangleId, Triangles};
 use crate::occlusion::brute::visit_all;
 use crate::occlusion::clip::Clip;
 use crate::occlusion::{Cell, Visit, Walk};
+
+/// A voxel with more triangles than this is divided.
+const CROWDED: usize = 16;
 
 /// A divided voxel with more triangles than this is not remembered: testing all would cost more than a walk.
 const MOST_REMEMBERED: u32 = 64;
@@ -32,12 +38,11 @@ const MOST_REMEMBERED: u32 = 64;
 const NO_CELL: Cell = Cell { start: 0, end: u32::MAX };
 
 /// The grid of a crowded voxel, when it is known whether dividing it gains anything.
-type Inside = OnceLock<Option<Box<Grid>>>;
+type Inside = OnceLock<Option<Box<NestedGrid>>>;
 
-/// A grid over the triangles' box, and grids in those of its crowded voxels that rays come to.
-pub struct LazyGrid {
+/// A uniform grid over the triangles' box, and grids in its crowded voxels.
+pub struct DividedGrid {
     triangles: Arc<Triangles>,
-    scene: Bounds,
     outer: Grid,
     /// By list of the outer grid.
     insides: Box<[Inside]>,
@@ -45,16 +50,27 @@ pub struct LazyGrid {
     left: AtomicU64,
 }
 
-impl LazyGrid {
-    /// Sorts the triangles into voxels, in parallel; divides none.
-    #[must_use]
-    pub fn new(triangles: &Arc<Triangles>, options: GridOptions) -> Self {
-        let outer = Grid::undivided(triangles, options.resolution);
+impl DividedGrid {
+    /// Sorts the triangles into voxels, in parallel; divides those that are crowded, unless the options say that it is to
+    /// be done when rays come.
+    ///
+    /// # Errors
+    /// If a resolution is asked for with which there would be too many entries.
+    pub fn new(triangles: &Arc<Triangles>, options: GridOptions) -> Result<Self, TooFine> {
+        let outer = Grid::of_resolution(triangles, GridOptions { nested: true, ..options })?;
         let insides: Box<[Inside]> = (0..outer.list_count()).map(|_| OnceLock::new()).collect();
         let held = (outer.memory() + size_of_val(&*insides)) as u64;
-        let left = AtomicU64::new(options.most_bytes.unwrap_or(u64::MAX).saturating_sub(held));
-        let scene = triangles.bounds().unwrap_or_default();
-        Self { triangles: triangles.clone(), scene, outer, insides, left }
+        let most = if options.lazy { options.most_bytes } else { None };
+        let left = AtomicU64::new(most.unwrap_or(u64::MAX).saturating_sub(held));
+        let grid = Self { triangles: triangles.clone(), outer, insides, left };
+        if !options.lazy {
+            (0..grid.outer.voxel_count()).into_par_iter().for_each(|voxel| {
+                if let Some(list) = grid.outer.list_of(voxel) {
+                    let _ = grid.inside(voxel, list, grid.listed(voxel));
+                }
+            });
+        }
+        Ok(grid)
     }
 
     /// Number of voxels that were divided so far.
@@ -63,49 +79,61 @@ impl LazyGrid {
         self.divided().count()
     }
 
-    fn divided(&self) -> impl Iterator<Item = &Grid> {
+    fn divided(&self) -> impl Iterator<Item = &NestedGrid> {
         self.insides.iter().filter_map(|inside| inside.get()?.as_deref())
+    }
+
+    #[inline(always)]
+    fn listed(&self, voxel: usize) -> &[TriangleId] {
+        let cell = self.outer.listed(voxel);
+        &self.order()[cell.start as usize..cell.end as usize]
     }
 
     /// The grid of a voxel, which is made now if it is the first time.
     #[inline(always)]
-    fn inside(&self, index: usize, list: usize, triangles: &[TriangleId]) -> Option<&Grid> {
+    fn inside(&self, voxel: usize, list: usize, triangles: &[TriangleId]) -> Option<&NestedGrid> {
         if triangles.len() <= CROWDED {
             return None;
         }
-        let make = || {
-            let outer = self.outer.outermost();
-            let grid = divide(&self.triangles, self.scene, outer, index, triangles)?;
-            let bytes = bytes_of(&grid) as u64;
-            let without = |left: u64| left.checked_sub(bytes);
-            self.left.fetch_update(Relaxed, Relaxed, without).is_ok().then(|| Box::new(grid))
-        };
-        self.insides[list].get_or_init(make).as_deref()
+        self.insides[list].get_or_init(|| self.divide(voxel, triangles)).as_deref()
+    }
+
+    #[cold]
+    fn divide(&self, voxel: usize, triangles: &[TriangleId]) -> Option<Box<NestedGrid>> {
+        let level = self.outer.level();
+        let [width, height, _] = level.resolution.map(|n| n as usize);
+        let place = [voxel % width, voxel / width % height, voxel / (width * height)];
+        // The walk around may err as much as the padding allows.
+        let low = level.corner(place.map(|n| n as u32)) - level.pad;
+        let high = low + level.side + DVec3::splat(2.0 * level.pad);
+        let grid = NestedGrid::within(&self.triangles, triangles, low, high)?;
+        let bytes = bytes_of(&grid) as u64;
+        let without = |left: u64| left.checked_sub(bytes);
+        self.left.fetch_update(Relaxed, Relaxed, without).is_ok().then(|| Box::new(grid))
     }
 }
 
-fn bytes_of(grid: &Grid) -> usize {
-    size_of::<Grid>() + grid.memory()
+fn bytes_of(grid: &NestedGrid) -> usize {
+    size_of::<NestedGrid>() + grid.memory()
 }
 
-impl Walk for LazyGrid {
+impl Walk for DividedGrid {
     #[inline(always)]
-    fn walk<V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
-        let order = self.order();
+    fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
         let (enter, leave) = match self.outer.clip(ray) {
             Clip::Outside => return,
-            Clip::Everything => return visit_all(order, 8, visitor),
+            Clip::Everything => return visit_all(self.order(), 8, visitor),
             Clip::Inside(enter, leave) => (enter, leave),
         };
-        for step in Steps::new(self.outer.outermost(), ray, enter, leave) {
+        for step in Steps::new(self.outer.level(), ray, enter, leave) {
             if let Some(list) = self.outer.list_of(step.index) {
                 let cell = self.outer.listed(step.index);
-                let triangles = &order[cell.start as usize..cell.end as usize];
+                let triangles = self.listed(step.index);
                 let visited = match self.inside(step.index, list, triangles) {
                     None => visitor.visit(cell, triangles),
                     Some(grid) => {
                         let mut parts = Parts::of(cell, visitor);
-                        walk(grid, ray, &mut parts);
+                        grid.walk::<L, _>(ray, &mut parts);
                         parts.visited
                     }
                 };

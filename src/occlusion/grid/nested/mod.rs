@@ -1,0 +1,230 @@
+//! Grids within grids: every crowded voxel holds a grid of its own, of at most 4×4×4 voxels, fitted to what it
+//! holds.
+//!
+//! A recursive grid (Jevans & Wyvill 1989) with small grids, so that one is a record of a cache line: its box, and a bit a
+//! voxel that says whether anything is in it. Where the ray goes is not stepped through: all 64 voxels are
+//! tested at once, as slabs in vectors (`walk`), and the bits of those that are met and hold anything are taken in the ray's
+//! order. So empty space costs nothing, and a grid about as much as a node of a wide BVH; yet voxels are disjoint,
+//! as the paper's caches want them.
+//!
+//! Wins over a uniform grid wherever detail is uneven, which is everywhere: 3 to 10 times, and it is smaller. Loses to
+//! a BVH where long thin triangles fan out, which no grid separates.
+//!
+//! **Exact,** because nothing is lost. All of it lives in the unit cube of the scene, in f32. A point of the ray and
+//! a point of a triangle within the [slack](Triangles::slack) of each other are in the same voxel as far as the walk can
+//! tell, because triangles are listed in all voxels within [`padding`] of them, and the walk misplaces a
+//! point by less. In units of u = 2⁻²⁴ and of the cube's side:
+//!
+//! | error of a place | bound |
+//! | --- | --- |
+//! | origin: difference, scale, product, of magnitudes up to 1.5 | 4.5 u |
+//! | direction: scale, product, its inverse | 4.5 u |
+//! | corner of a grid, its distance from the origin, product with the inverse | 4 u |
+//! | side times inverse, a multiple of it added, rounded twice | 5 u |
+//! | corners of the triangle, in the cube | 1 u |
+//! | which voxels a box spans, when it is sorted in | 4 u |
+//!
+//! Together 23 u < 2⁻¹⁹ = 32 u = [`MISPLACED`]. The same planes bound neighbouring voxels, computed alike, so every point of the ray
+//! is in some voxel; and the box of a grid reaches beyond its voxel by twice the padding, so every point that
+//! its parent takes to be in the voxel is in the box. The test of triangle and voxel in `sort` has an allowance of its own.
+//!
+//! Jevans, Wyvill: Adaptive Voxel Subdivision for Ray Tracing. Graphics Interface 1989.
+
+mod build;
+mod sort;
+mod walk;
+
+use glam::{DVec3, UVec3, Vec3A};
+
+use crate::geometry::lanes::Lanes;
+use crate::geometry::{Ray, TriangleId, Triangles};
+use crate::occlusion::clip::{Clip, clip};
+use crate::occlusion::{Cell, Visit, Walk};
+
+/// How far from its place the walk may take a point to be; see the table above.
+const MISPLACED: f32 = 1.0 / (1 << 19) as f32;
+
+/// Voxels along an axis of one grid at most: 64 in all, a bit each.
+const MOST: u32 = 4;
+
+/// The unit cube that a scene or a part of it is mapped to.
+#[derive(Clone, Copy, Debug)]
+struct Cube {
+    /// Its lower corner, and the inverse of its side.
+    min: DVec3,
+    scale: f64,
+    /// The same in f32: the corner exactly.
+    corner: Vec3A,
+    factor: f32,
+    /// The part of it that holds anything, for rays from afar.
+    low: DVec3,
+    high: DVec3,
+    /// How far outside a voxel its triangles may be, in sides of the cube.
+    padding: f32,
+}
+
+impl Cube {
+    /// The cube over all of the triangles.
+    fn over(triangles: &Triangles) -> Self {
+        /// A scene that is one point has some side too.
+        const LEAST: f64 = 1e-60;
+        let (bounds, slack) = (triangles.bounds().unwrap_or_default(), triangles.slack());
+        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let side = (max - min).max_element().max(slack).max(LEAST);
+        let scale = side.recip();
+        // Rounded up: what is a little wider loses nothing.
+        let padding = MISPLACED + (slack * scale * (1.0 + f64::from(f32::EPSILON))) as f32;
+        let beyond = DVec3::splat(2.0 * f64::from(padding) * side);
+        Self {
+            min,
+            scale,
+            corner: Vec3A::from(bounds.min),
+            factor: scale as f32,
+            low: min - beyond,
+            high: max + beyond,
+            padding,
+        }
+    }
+
+    /// A point of the scene in the cube.
+    fn place(&self, point: DVec3) -> DVec3 {
+        (point - self.min) * self.scale
+    }
+}
+
+/// One grid: which of its voxels hold anything, and which of those a grid.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+struct Node {
+    /// The corner with the least coordinates.
+    min: Vec3A,
+    /// Sides of a voxel. Voxels beyond the grid's resolution are there, outside its box, and empty.
+    side: Vec3A,
+    /// The first of the grids in its voxels, which follow each other; likewise the first list.
+    first_node: u32,
+    first_list: u32,
+    /// A bit a voxel: x + 4 y + 16 z.
+    occupied: u64,
+    divided: u64,
+}
+
+/// What a voxel holds.
+enum Content {
+    Nothing,
+    List(usize),
+    Grid(usize),
+}
+
+impl Node {
+    #[inline(always)]
+    fn content(&self, voxel: u32) -> Content {
+        let bit = 1u64 << voxel;
+        let before = bit - 1;
+        if self.divided & bit != 0 {
+            Content::Grid((self.first_node + (self.divided & before).count_ones()) as usize)
+        } else if self.occupied & bit != 0 {
+            let lists = self.occupied & !self.divided;
+            Content::List((self.first_list + (lists & before).count_ones()) as usize)
+        } else {
+            Content::Nothing
+        }
+    }
+
+    /// Number of voxels that hold a list.
+    fn list_count(&self) -> usize {
+        (self.occupied & !self.divided).count_ones() as usize
+    }
+
+    /// The voxel that holds a point; the nearest one for a point outside.
+    fn voxel_of(&self, point: Vec3A) -> u32 {
+        let most = Vec3A::splat((MOST - 1) as f32);
+        let place = ((point - self.min) / self.side).clamp(Vec3A::ZERO, most).as_uvec3();
+        place.dot(UVec3::new(1, MOST, MOST * MOST))
+    }
+}
+
+/// Grids within grids over the triangles' box.
+pub struct NestedGrid {
+    cube: Cube,
+    /// The outermost grid first; none if there is nothing in it.
+    nodes: Vec<Node>,
+    /// Where in `order` each list starts; one more than there are lists.
+    starts: Vec<u32>,
+    order: Vec<TriangleId>,
+}
+
+impl NestedGrid {
+    /// Sorts the triangles into voxels, in parallel. Without triangles, it is a grid of nothing.
+    #[must_use]
+    pub fn new(triangles: &Triangles) -> Self {
+        build::build(triangles)
+    }
+
+    /// The same for some of the triangles, and only where they are in a box; `None` if that would gain nothing over
+    /// testing all of them.
+    pub(super) fn within(
+        triangles: &Triangles,
+        list: &[TriangleId],
+        low: DVec3,
+        high: DVec3,
+    ) -> Option<Self> {
+        build::divide(triangles, list, low, high)
+    }
+
+    /// Number of grids.
+    #[must_use]
+    pub fn grid_count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// A corner of a voxel of one of the grids, from 0 to 4 along each axis.
+    ///
+    /// # Panics
+    /// If there is no such grid.
+    #[must_use]
+    pub fn corner(&self, grid: usize, corner: [u32; 3]) -> DVec3 {
+        let Node { min, side, .. } = self.nodes[grid];
+        let place = min + side * UVec3::from(corner).as_vec3a();
+        self.cube.min + place.as_dvec3() / self.cube.scale
+    }
+
+    /// The innermost voxel that holds a point of the scene's box; the nearest one for a point outside.
+    #[must_use]
+    pub fn cell_at(&self, point: DVec3) -> Cell {
+        let point = self.cube.place(point).as_vec3a();
+        let mut node = self.nodes.first();
+        while let Some(grid) = node {
+            match grid.content(grid.voxel_of(point)) {
+                Content::Grid(inside) => node = self.nodes.get(inside),
+                Content::List(list) => return self.cell(list),
+                Content::Nothing => break,
+            }
+        }
+        Cell::default()
+    }
+
+    #[inline(always)]
+    fn cell(&self, list: usize) -> Cell {
+        Cell { start: self.starts[list], end: self.starts[list + 1] }
+    }
+
+    /// The part of a ray that is in the cube.
+    fn clip(&self, ray: &Ray) -> Clip {
+        clip(ray, self.cube.low, self.cube.high)
+    }
+}
+
+impl Walk for NestedGrid {
+    #[inline(always)]
+    fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
+        walk::walk::<L, V>(self, ray, visitor);
+    }
+
+    fn order(&self) -> &[TriangleId] {
+        &self.order
+    }
+
+    fn memory(&self) -> usize {
+        size_of_val(&*self.nodes) + size_of_val(&*self.starts) + size_of_val(&*self.order)
+    }
+}
