@@ -61,7 +61,11 @@ fn row(scene: &Scene, samples: u32) {
             Contender { name, built: 0.0, prepare: Box::new(make) }
         })
         .collect();
-    let auto = move || Auto::new(Method::Trace, Test::Exact, scene, grid).expect("it goes");
+    let count = queries.count as u64;
+    let auto = move || {
+        let auto = Auto::new(Method::Trace, Test::Exact, scene, grid).expect("it goes");
+        auto.expecting(count)
+    };
     let prepare = Box::new(move || Answers::Method(Box::new(auto())));
     contenders.push(Contender { name: "auto", built: 0.0, prepare });
     let costs = measure(&contenders, &queries, ROUNDS, 1);

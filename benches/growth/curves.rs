@@ -1,7 +1,5 @@
 //! What grows, and who is asked.
 
-use std::time::Instant;
-
 use glam::DVec3;
 use umbra::occlusion::{
     Backend, BuildOptions, Embree, EmbreeOptions, Occlusion, PacketWidth, Test, build,
@@ -51,9 +49,20 @@ struct Engines {
     packets: Option<Embree>,
 }
 
+/// Seconds that all threads of this process have run.
+fn processor_seconds() -> f64 {
+    let tasks = std::fs::read_dir("/proc/self/task").expect("Linux lists threads");
+    let nanoseconds = |task: std::fs::DirEntry| -> Option<f64> {
+        let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse().ok()
+    };
+    tasks.flatten().filter_map(nanoseconds).sum::<f64>() * 1e-9
+}
+
+/// What was made, and the seconds of all threads that it took, as far as they run still.
 fn timed<T>(make: impl FnOnce() -> T) -> (T, f64) {
-    let start = Instant::now();
-    (make(), start.elapsed().as_secs_f64())
+    let start = processor_seconds();
+    (make(), processor_seconds() - start)
 }
 
 impl Engines {
@@ -77,7 +86,12 @@ impl Engines {
         })
     }
 
-    fn contenders<'a>(&'a self, scene: &'a Scene, out: &[&str]) -> Vec<Contender<'a>> {
+    fn contenders<'a>(
+        &'a self,
+        scene: &'a Scene,
+        count: usize,
+        out: &[&str],
+    ) -> Vec<Contender<'a>> {
         let (grid, embree) = (&*self.grid.0, &self.embree.0);
         let method = move |combination: Combination| -> Box<dyn Fn() -> Answers<'a> + Sync + 'a> {
             Box::new(move || {
@@ -90,7 +104,8 @@ impl Engines {
                     "grid trace" => (self.grid.1, Box::new(move || Answers::Engine(grid))),
                     "auto" => {
                         let make = move || {
-                            Auto::new(Method::Trace, Test::Exact, scene, grid).expect("it goes")
+                            let auto = Auto::new(Method::Trace, Test::Exact, scene, grid);
+                            auto.expect("it goes").expecting(count as u64)
                         };
                         (self.grid.1, Box::new(move || Answers::Method(Box::new(make()))))
                     }
@@ -130,7 +145,7 @@ impl Out {
         threads: usize,
     ) -> Point {
         let queries = Queries::of(scene, &engines.embree.0, settings);
-        let contenders = engines.contenders(scene, &self.slow);
+        let contenders = engines.contenders(scene, queries.count, &self.slow);
         let costs = measure(&contenders, &queries, self.rounds, threads);
         let ours: Vec<usize> = costs
             .iter()

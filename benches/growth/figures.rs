@@ -12,6 +12,9 @@ use umbra::whole_file::write_whole;
 use super::contest::Costs;
 use super::curves::{CONTENDERS, Curve, Point};
 
+/// What a chart shows of a contender's costs.
+type Part = fn(&Costs) -> f64;
+
 /// Width of the charts.
 const WIDTH: f64 = 900.0;
 
@@ -32,12 +35,16 @@ fn look(name: &str) -> Look {
 pub fn write(folder: &Path, curve: &Curve, points: &[Point]) -> io::Result<()> {
     let file = |ending: &str| folder.join(format!("growth-{}.{ending}", curve.name));
     write_whole(&file("csv"), csv(curve, points).as_bytes())?;
-    let mut charts = Vec::new();
-    for same in points.chunk_by(|a, b| a.scene == b.scene) {
-        charts.push(chart(curve, same, "everything built", |costs| costs.then));
-        charts.push(chart(curve, same, "building included", Costs::whole));
+    let kinds: [(&str, &str, Part); 2] = [
+        ("svg", "everything built", |costs| costs.then),
+        ("with-building.svg", "building included", Costs::whole),
+    ];
+    for (ending, what, cost) in kinds {
+        let scenes = points.chunk_by(|a, b| a.scene == b.scene);
+        let charts: Vec<Chart> = scenes.map(|same| chart(curve, same, what, cost)).collect();
+        write_whole(&file(ending), document(&charts, WIDTH).as_bytes())?;
     }
-    write_whole(&file("svg"), document(&charts, WIDTH).as_bytes())
+    Ok(())
 }
 
 fn csv(curve: &Curve, points: &[Point]) -> String {
@@ -60,7 +67,7 @@ fn csv(curve: &Curve, points: &[Point]) -> String {
     text
 }
 
-fn chart(curve: &Curve, points: &[Point], what: &str, cost: fn(&Costs) -> f64) -> Chart {
+fn chart(curve: &Curve, points: &[Point], what: &str, cost: Part) -> Chart {
     let mut marks = Vec::new();
     let mut curves = Vec::new();
     let mut legend = Vec::new();

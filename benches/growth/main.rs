@@ -1,7 +1,7 @@
 //! How the cost of a shadow ray grows: with triangles, lights, samples and threads; ours beside Embree's.
 //!
 //! `cargo bench --bench growth -- FOLDER ROUNDS CURVE…` measures the curves named (`triangles`, `lights`, `samples`, `threads`; all
-//! of them if none is), and writes each as `growth-CURVE.csv` and `growth-CURVE.svg` into the folder. *Everything
+//! of them if none is), and writes each as `growth-CURVE.csv`, `.svg` and `.with-building.svg` into the folder. *Everything
 //! built* is a second pass over the same queries; *building included* is preparing and the first pass: of the
 //! grid for `trace`, of clusters for `shaft` and `light-buffer`, of both for `auto`, of Embree's BVH for Embree. A
 //! contender that takes too long for one point is left out of those after it, and a scene that memory does not hold
