@@ -7,10 +7,13 @@
 //!
 //! `cargo bench --bench backends`; the real scenes are looked for in `UMBRA_SCENES` or `../shared/scenes`.
 
+mod common;
+
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use common::folder;
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use umbra::geometry::Ray;
 use umbra::occlusion::{Backend, BuildOptions, Occlusion, Tally, Test, build};
@@ -33,10 +36,7 @@ const ENGINES: [(Backend, Test); 7] = [
 ];
 
 fn scenes() -> Vec<Scene> {
-    let folder = std::env::var_os("UMBRA_SCENES").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes"),
-        PathBuf::from,
-    );
+    let folder = folder();
     let mut names = vec![PathBuf::from("jittered-dense")];
     for name in ["sponza.glb", "delft.obj"] {
         let path = folder.join(name);

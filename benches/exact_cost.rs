@@ -6,10 +6,12 @@
 //!
 //! `cargo bench --bench exact_cost`; the scenes are looked for in `UMBRA_SCENES` or `../shared/scenes`.
 
+mod common;
+
 use std::hint::black_box;
-use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use common::{REAL_SCENES, folder};
 use umbra::geometry::Ray;
 use umbra::measure::recording::Recording;
 use umbra::occlusion::{Backend, BuildOptions, Occlusion, Tally, Test, build};
@@ -26,26 +28,6 @@ const PIECE: usize = 200;
 const ROUNDS: usize = 20;
 
 const BACKENDS: [Backend; 3] = [Backend::Grid, Backend::Bvh2, Backend::Cwbvh];
-
-const SCENES: [&str; 10] = [
-    "CornellBox-Original.obj",
-    "bunny.obj",
-    "office.obj",
-    "staircase.glb",
-    "sponza.glb",
-    "satellite.glb",
-    "jungle.glb",
-    "delft.obj",
-    "tower_bridge.glb",
-    "bigtujunga.glb",
-];
-
-fn folder() -> PathBuf {
-    std::env::var_os("UMBRA_SCENES").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes"),
-        PathBuf::from,
-    )
-}
 
 /// Shadow rays of a picture: whole tiles, spread over it.
 fn shadow_rays(scene: &Scene) -> Vec<Ray> {
@@ -93,7 +75,7 @@ fn main() {
     let folder = folder();
     println!("{:26}{:>9}{:>14}{:>14}{:>9}", "scene", "engine", "pluecker", "exact", "ratio");
     let mut ratios = vec![Vec::new(); BACKENDS.len()];
-    for name in SCENES {
+    for name in REAL_SCENES {
         let path = folder.join(name);
         if !path.is_file() {
             eprintln!("*** NOT MEASURED: {} is absent; set UMBRA_SCENES ***", path.display());

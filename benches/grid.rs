@@ -7,9 +7,12 @@
 //! two threads, and the median counts. *Ratio* is the time over that of Embree's single ray in its default mode at
 //! medium quality: below 1 it is faster.
 
-use std::path::{Path, PathBuf};
+mod common;
+
+use std::path::PathBuf;
 use std::time::Instant;
 
+use common::{REAL_SCENES, folder};
 use glam::DVec2;
 use umbra::geometry::Ray;
 use umbra::measure::paper::thread_time;
@@ -38,19 +41,6 @@ const SIZE: (u32, u32) = (640, 486);
 
 const BUILT_IN: [&str; 4] = ["jittered-sparse", "jittered-dense", "drum", "chair-room"];
 
-const REAL: [&str; 10] = [
-    "CornellBox-Original.obj",
-    "bunny.obj",
-    "office.obj",
-    "staircase.glb",
-    "sponza.glb",
-    "satellite.glb",
-    "jungle.glb",
-    "delft.obj",
-    "tower_bridge.glb",
-    "bigtujunga.glb",
-];
-
 /// Who runs; the first is the measure.
 const RACERS: [(&str, Backend, Test, bool); 6] = [
     ("embree", Backend::Embree, Test::Moller, true),
@@ -64,7 +54,7 @@ const RACERS: [(&str, Backend, Test, bool); 6] = [
 fn main() {
     let named: Vec<String> =
         std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
-    let all = BUILT_IN.iter().chain(&REAL).map(|&name| name.to_owned());
+    let all = BUILT_IN.iter().chain(&REAL_SCENES).map(|&name| name.to_owned());
     let scenes: Vec<String> = if named.is_empty() { all.collect() } else { named };
     let mut ratios = vec![[const { Vec::new() }; MEASURES.len()]; RACERS.len()];
     for name in &scenes {
@@ -94,11 +84,7 @@ fn main() {
 const MEASURES: [&str; 4] = ["shadow", "nearest", "build", "memory"];
 
 fn path_of(name: &str) -> PathBuf {
-    let folder = std::env::var_os("UMBRA_SCENES").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes"),
-        PathBuf::from,
-    );
-    let real = folder.join(name);
+    let real = folder().join(name);
     if real.is_file() { real } else { PathBuf::from(name) }
 }
 

@@ -10,8 +10,11 @@
 //! `cargo bench --bench methods`, and `-- NAME WxH` for scenes whose names hold NAME, and another size; the
 //! real scenes are looked for in `UMBRA_SCENES` or `../shared/scenes`.
 
+mod common;
+
 use std::path::{Path, PathBuf};
 
+use common::folder;
 use umbra::measure::paper::Meter;
 use umbra::measure::recording::Recording;
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
@@ -46,11 +49,9 @@ fn combinations() -> Vec<Combination> {
 /// A built-in scene, one of this repository, or a real one.
 fn find(name: &str) -> Option<PathBuf> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let real = std::env::var_os("UMBRA_SCENES")
-        .map_or_else(|| here.join("../shared/scenes"), PathBuf::from);
     match name.rsplit_once('.') {
         None => Some(PathBuf::from(name)),
-        Some(_) => [here.join(name), real.join(name)].into_iter().find(|path| path.is_file()),
+        Some(_) => [here.join(name), folder().join(name)].into_iter().find(|path| path.is_file()),
     }
 }
 

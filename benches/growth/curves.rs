@@ -1,6 +1,7 @@
 //! What grows, and who is asked.
 
 use glam::DVec3;
+use umbra::measure::paper::process_time;
 use umbra::occlusion::{
     Backend, BuildOptions, Embree, EmbreeOptions, Occlusion, PacketWidth, Test, build,
 };
@@ -49,20 +50,10 @@ struct Engines {
     packets: Option<Embree>,
 }
 
-/// Seconds that all threads of this process have run.
-fn processor_seconds() -> f64 {
-    let tasks = std::fs::read_dir("/proc/self/task").expect("Linux lists threads");
-    let nanoseconds = |task: std::fs::DirEntry| -> Option<f64> {
-        let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
-        text.split_whitespace().next()?.parse().ok()
-    };
-    tasks.flatten().filter_map(nanoseconds).sum::<f64>() * 1e-9
-}
-
-/// What was made, and the seconds of all threads that it took, as far as they run still.
+/// What was made, and the seconds of all threads that it took.
 fn timed<T>(make: impl FnOnce() -> T) -> (T, f64) {
-    let start = processor_seconds();
-    (make(), processor_seconds() - start)
+    let start = process_time();
+    (make(), (process_time() - start) as f64 * 1e-9)
 }
 
 impl Engines {
