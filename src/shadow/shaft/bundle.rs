@@ -125,8 +125,7 @@ impl OriginBox {
 pub(super) struct Bundle {
     /// Origins relative to the centre, by axis; places not used repeat the first.
     pub origins: [[[f32; PACKET]; PACKETS]; 3],
-    pub centre: Vec3,
-    /// What planes are made for; it may serve several bundles to one light.
+    /// Where the centre is, and what planes are made for; it may serve several bundles to one light.
     pub ground: Option<Ground>,
     pub boxes: [OriginBox; 2 * PACKETS],
     /// A bit a query that is a ray to the light.
@@ -141,7 +140,6 @@ impl Bundle {
     pub const fn empty() -> Self {
         Self {
             origins: [[[0.0; PACKET]; PACKETS]; 3],
-            centre: Vec3::ZERO,
             ground: None,
             boxes: [OriginBox::EMPTY; 2 * PACKETS],
             asked: [0; PACKETS],
@@ -150,10 +148,10 @@ impl Bundle {
         }
     }
 
-    /// Takes over queries; those that are not rays to this light are not asked. `false` if none is, or if
-    /// coordinates are so large or small that products of them could over- or underflow.
+    /// Takes over queries; those that are not rays to this light are not asked. Gives the ground that they are on; `None`
+    /// if none is asked, or if coordinates are so large or small that products of them could over- or underflow.
     #[inline(always)]
-    pub fn fill<L: Lanes>(&mut self, source: &Source, queries: &Chosen<'_>) -> bool {
+    pub fn fill<L: Lanes>(&mut self, source: &Source, queries: &Chosen<'_>) -> Option<Ground> {
         self.open = [0; PACKETS];
         let packets = queries.count().div_ceil(PACKET);
         let (mut first, mut stray) = (None, 0u16);
@@ -184,7 +182,7 @@ impl Bundle {
                 first = Some((packet, asked.trailing_zeros() as usize));
             }
         }
-        let Some(first) = first else { return false };
+        let first = first?;
         let mut origin = [0.0; 3];
         for (axis, origin) in origin.iter_mut().enumerate() {
             *origin = self.origins[axis][first.0][first.1];
@@ -222,31 +220,29 @@ impl Bundle {
         };
         self.largest = low.abs().max(high.abs()).max(light.abs()).max_element();
         if !MAGNITUDES.contains(&self.largest) {
-            return false;
+            return None;
         }
-        if !self.ground.is_some_and(|ground| ground.holds(low, high)) {
-            self.ground = None;
-        }
-        let around = || Ground::around(source, low, high, self.largest);
-        self.centre = self.ground.get_or_insert_with(around).centre;
+        let known = self.ground.filter(|ground| ground.holds(low, high));
+        let ground = known.unwrap_or_else(|| Ground::around(source, low, high, self.largest));
+        self.ground = Some(ground);
         for axis in 0..3 {
             for values in &mut self.origins[axis][..packets] {
                 for value in values {
-                    *value -= self.centre[axis];
+                    *value -= ground.centre[axis];
                 }
             }
         }
         for packet in 0..packets {
             let around = &mut self.boxes[PACKETS + packet];
-            around.low -= self.centre;
-            around.high -= self.centre;
+            around.low -= ground.centre;
+            around.high -= ground.centre;
         }
         self.asked = self.open;
         for parent in (1..PACKETS).rev() {
             let [a, b] = [self.boxes[2 * parent], self.boxes[2 * parent + 1]];
             self.boxes[parent] = OriginBox { low: a.low.min(b.low), high: a.high.max(b.high) };
         }
-        true
+        Some(ground)
     }
 
     /// Whether the origins do not stay together: packets are hardly smaller than the bundle, and far larger

@@ -88,13 +88,10 @@ impl Walker {
     /// Settles all queries to this light: those that stay open are lit. `false` if none is settled.
     #[inline(always)]
     pub fn walk<L: Lanes>(&mut self, source: &Source, around: &Around, tally: &mut Tally) -> bool {
-        if !self.bundle.fill::<L>(source, &around.queries)
-            || (around.leaves_spread && self.bundle.is_spread(around.clusters.typical_extent()))
-        {
+        let Some(ground) = &self.bundle.fill::<L>(source, &around.queries) else { return false };
+        if around.leaves_spread && self.bundle.is_spread(around.clusters.typical_extent()) {
             return false;
         }
-        let Some(ground) = self.bundle.ground else { return false };
-        let ground = &ground;
         if self.planes_for != Some(*ground) {
             self.planes_for = Some(*ground);
             self.planes_of = [NOBODY; KEPT];
@@ -143,8 +140,8 @@ impl Walker {
             return;
         }
         self.known |= 1 << part;
-        let Bundle { boxes, centre, largest, .. } = &self.bundle;
-        self.shafts[part] = Shaft::new(&ground.source, *centre, &boxes[part], *largest);
+        let Bundle { boxes, largest, .. } = &self.bundle;
+        self.shafts[part] = Shaft::new(&ground.source, ground.centre, &boxes[part], *largest);
     }
 
     /// The rays of a packet.
