@@ -298,10 +298,15 @@ impl ShadowOptions {
         // Embree has no exact test, so nobody but Embree gives its bits, and there is nothing to choose among. Shafts answer
         // all rays to lights, exactly, and in less time than Embree's single rays.
         let embree = engine.backend == Backend::Embree && self.self_shadow == SelfShadow::Offset;
-        let combination = match self.shadows {
-            Choice::Given(combination) => combination,
-            Choice::Auto if embree => VerdictKind::Shaft.into(),
-            Choice::Auto => Combination::default(),
+        let given = match self.shadows {
+            Choice::Given(combination) => Some(combination),
+            Choice::Auto if embree => {
+                say!(
+                    "umbra: over embree, auto is shaft: exact; --shadows trace has Embree's own answers"
+                );
+                Some(VerdictKind::Shaft.into())
+            }
+            Choice::Auto => None,
         };
         let plan = Plan {
             budget: engine.memory,
@@ -310,21 +315,13 @@ impl ShadowOptions {
             reset_scanlines: self.reset_scanlines,
             tree_depth: self.tree_depth,
             tolerance: self.tolerance,
-            ..combination.into()
+            ..given.unwrap_or_default().into()
         };
-        match self.shadows {
-            Choice::Given(_) => prepare(plan, scene, backend),
-            Choice::Auto if embree => {
-                say!(
-                    "umbra: over embree, auto is shaft: exact; --shadows trace has Embree's own answers"
-                );
-                prepare(plan, scene, backend)
-            }
-            Choice::Auto => {
-                let auto = Auto::new(plan, engine.test(), scene, backend)?;
-                Ok(Box::new(auto.expecting(expected)))
-            }
+        if given.is_some() {
+            return prepare(plan, scene, backend);
         }
+        let auto = Auto::new(plan, engine.test(), scene, backend)?;
+        Ok(Box::new(auto.expecting(expected)))
     }
 }
 
