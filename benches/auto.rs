@@ -5,6 +5,7 @@
 //! figures are nanoseconds a query, preparing included (the grid apart, which all have behind them). *Of the best* is
 //! `auto` over the cheapest single method; *then* is a second pass, with everything built and learnt.
 
+mod common;
 #[path = "growth/contest.rs"]
 mod contest;
 
@@ -35,7 +36,7 @@ fn main() {
     };
     let samples = samples.parse().expect(USAGE);
     for scene in scenes {
-        match load(scene) {
+        match load(&common::path_of(scene).to_string_lossy()) {
             Ok(scene) => row(&scene, samples),
             Err(error) => eprintln!("*** NOT MEASURED: {error} ***"),
         }

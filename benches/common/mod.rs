@@ -1,5 +1,9 @@
-//! Where the ten real scenes are.
+//! What several benches need: the real scenes, lights to add, the queries of a picture.
 #![allow(dead_code, reason = "each bench uses a part of it")]
+
+pub mod by_place;
+pub mod lights;
+pub mod runs;
 
 use std::path::{Path, PathBuf};
 
@@ -23,4 +27,10 @@ pub fn folder() -> PathBuf {
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes"),
         PathBuf::from,
     )
+}
+
+/// Where a scene is that may be given by the name of a real one, as a file, or by a built-in name.
+pub fn path_of(name: &str) -> PathBuf {
+    let real = folder().join(name);
+    if real.is_file() { real } else { PathBuf::from(name) }
 }
