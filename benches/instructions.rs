@@ -10,6 +10,7 @@ mod common;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
+use common::roomy;
 use common::runs::{Run, blocked_by_engine, blocked_by_worker};
 use umbra::geometry::{Ray, Triangle, Triangles};
 use umbra::measure::paper::{Callgrind, Meter, callgrind};
@@ -115,7 +116,7 @@ fn count_scene(meter: &Meter, scene: &Scene) {
     }
     for name in METHODS {
         let combination: Combination = name.parse().expect("a method");
-        let prepared = prepare(combination, scene, &*grid).expect("it goes with the grid");
+        let prepared = prepare(roomy(combination), scene, &*grid).expect("it goes with the grid");
         let mut worker = prepared.worker();
         let mut ask = || {
             blocked_by_worker(&mut *worker, &runs);

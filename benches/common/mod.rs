@@ -7,6 +7,9 @@ pub mod runs;
 
 use std::path::{Path, PathBuf};
 
+use umbra::scene::default_budget;
+use umbra::shadow::{Combination, Plan};
+
 /// The ten of them, the simplest first.
 pub const REAL_SCENES: [&str; 10] = [
     "CornellBox-Original.obj",
@@ -27,6 +30,11 @@ pub fn folder() -> PathBuf {
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes"),
         PathBuf::from,
     )
+}
+
+/// A method with all the memory that it wants, within a quarter of the machine; else it takes no more than Embree would.
+pub fn roomy(combination: Combination) -> Plan {
+    Plan { budget: Some(default_budget()), ..combination.into() }
 }
 
 /// Where a scene is that may be given by the name of a real one, as a file, or by a built-in name.

@@ -9,7 +9,7 @@ use umbra::scene::{Scene, builtin};
 use umbra::shadow::{Auto, Combination, Method, prepare};
 
 use super::contest::{Answers, Contender, Costs, Queries, measure};
-use crate::common::lights;
+use crate::common::{lights, roomy};
 
 /// Seconds that a contender may take for a round of a point; then it is left out of greater ones.
 const PATIENCE: f64 = 20.0;
@@ -86,7 +86,9 @@ impl Engines {
         let (grid, embree) = (&*self.grid.0, &self.embree.0);
         let method = move |combination: Combination| -> Box<dyn Fn() -> Answers<'a> + Sync + 'a> {
             Box::new(move || {
-                Answers::Method(prepare(combination, scene, grid).expect("it goes with the grid"))
+                Answers::Method(
+                    prepare(roomy(combination), scene, grid).expect("it goes with the grid"),
+                )
             })
         };
         let made: Vec<Option<Contender<'a>>> = CONTENDERS

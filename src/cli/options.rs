@@ -45,7 +45,8 @@ pub(super) struct EngineOptions {
     #[arg(long, conflicts_with = "uniform")]
     pub lazy: bool,
     /// Most memory that engine and shadow method may take, like 512M or 2G: what is prepared becomes coarser
-    /// or steps aside, and says so; a quarter of the machine if not given
+    /// or steps aside, and says so; if not given, the shadow method takes no more than Embree's structure would, and
+    /// both together no more than a quarter of the machine
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
     pub memory: Option<u64>,
     /// Threads; all processors if not given
