@@ -11,7 +11,7 @@ mod contest;
 
 use contest::{Answers, Contender, Costs, Queries, measure};
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
-use umbra::render::Settings;
+use umbra::render::{Settings, forecast};
 use umbra::scene::{Scene, load};
 use umbra::shadow::{Auto, Combination, Method, prepare};
 
@@ -62,10 +62,9 @@ fn row(scene: &Scene, samples: u32) {
             Contender { name, built: 0.0, prepare: Box::new(make) }
         })
         .collect();
-    let count = queries.count as u64;
     let auto = move || {
         let auto = Auto::new(Method::Trace, Test::Exact, scene, grid).expect("it goes");
-        auto.expecting(count)
+        auto.expecting(forecast(scene, grid, &settings))
     };
     let prepare = Box::new(move || Answers::Method(Box::new(auto())));
     contenders.push(Contender { name: "auto", built: 0.0, prepare });

@@ -2,7 +2,7 @@
 
 use umbra::measure::paper::process_time;
 use umbra::occlusion::{Embree, EmbreeOptions, Occlusion, PacketWidth, Quality, Test};
-use umbra::render::Settings;
+use umbra::render::{Settings, forecast};
 use umbra::scene::Scene;
 use umbra::shadow::{Auto, Combination, Method, Prepared, Shadows, prepare};
 
@@ -37,7 +37,7 @@ const WAYS: [(&str, PacketWidth, bool, Option<Sorted>); 8] = [
 ];
 
 /// What was made, and the least nanoseconds of all threads that making it took.
-fn least<T>(mut make: impl FnMut() -> T) -> (T, u64) {
+pub fn least<T>(mut make: impl FnMut() -> T) -> (T, u64) {
     let (mut made, mut best, mut all) = (None, u64::MAX, 0);
     for _ in 0..PREPARATIONS {
         drop(made.take());
@@ -112,12 +112,10 @@ pub fn ours<'a>(
     every: usize,
 ) -> Vec<Ready<'a>> {
     const FITS: &str = "it goes with the grid";
-    let samples = settings.width * settings.height * settings.samples.pow(2);
-    let expected = u64::from(samples) * scene.lights.len() as u64 / every as u64;
     let make = |name: &str| -> Box<dyn Prepared + 'a> {
         if name == "auto" {
             let auto = Auto::new(Method::Trace, Test::Exact, scene, grid).expect(FITS);
-            return Box::new(auto.expecting(expected));
+            return Box::new(auto.expecting(forecast(scene, grid, settings) / every as u64));
         }
         let combination: Combination = name.parse().expect("a method");
         prepare(combination, scene, grid).expect(FITS)

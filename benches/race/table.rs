@@ -28,6 +28,8 @@ pub struct Outcome {
     /// Queries that were answered, and those of the whole picture.
     pub asked: usize,
     pub all: usize,
+    /// That building the grid took.
+    pub grid_nanoseconds: u64,
     pub figures: Vec<Figures>,
 }
 
@@ -55,6 +57,12 @@ impl Outcome {
     /// The time of the best Embree over that of somebody.
     fn ratio(&self, who: &Figures) -> f64 {
         self.best(|_| true).map_or(f64::NAN, |best| self.whole(best) / self.whole(who))
+    }
+
+    /// The same if building the grid counts too.
+    fn ratio_with_grid(&self, who: &Figures) -> f64 {
+        let grid = self.grid_nanoseconds as f64 / self.all as f64;
+        self.ratio(who) * self.whole(who) / (self.whole(who) + grid)
     }
 
     /// Quartiles of that over the parts, without preparation.
@@ -102,18 +110,19 @@ const RATED: [&str; 3] = ["shaft", "light-buffer", "auto"];
 /// The table of several races, their means, and how far each way is from the bound.
 pub fn markdown(outcomes: &[Outcome], bounds: &Bounds) -> String {
     let mut lines = vec![
-        "| scene | queries | best Embree, ns | if sorted, ns | grid `trace` | `light-buffer` | `shaft` | `auto` | ratio of `shaft` | of `light-buffer` | of `auto` | MB: Embree, shaft, light buffer | over the bound: Embree, `shaft`, `auto` |".to_owned(),
-        format!("|{}", " --- |".repeat(13)),
+        "| scene | queries | best Embree, ns | if sorted, ns | grid `trace` | `light-buffer` | `shaft` | `auto` | ratio of `shaft` | of `light-buffer` | of `auto` | with the grid | MB: Embree, shaft, light buffer | over the bound: Embree, `shaft`, `auto` |".to_owned(),
+        format!("|{}", " --- |".repeat(14)),
     ];
     lines.extend(outcomes.iter().filter_map(|outcome| row(outcome, bounds)));
-    let means = RATED.map(|name| {
-        let ratios: Vec<f64> = outcomes
-            .iter()
-            .filter_map(|outcome| Some(outcome.ratio(outcome.ours(name)?)))
-            .collect();
+    let mean = |name: &str, what: &str, ratio: fn(&Outcome, &Figures) -> f64| {
+        let ratios =
+            outcomes.iter().filter_map(|outcome| Some(ratio(outcome, outcome.ours(name)?)));
+        let ratios: Vec<f64> = ratios.collect();
         let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-        format!("{:.2} for `{name}` (least {least:.2})", geometric_mean(&ratios))
-    });
+        format!("{:.2} for `{name}`{what} (least {least:.2})", geometric_mean(&ratios))
+    };
+    let mut means = RATED.map(|name| mean(name, "", Outcome::ratio)).to_vec();
+    means.push(mean("auto", " with the grid", Outcome::ratio_with_grid));
     let partly = outcomes.iter().any(|outcome| outcome.asked < outcome.all);
     lines.push(format!("\nGeometric mean of the ratios: {}.", means.join(", ")));
     lines.push(format!("{bounds}"));
@@ -138,7 +147,7 @@ fn row(outcome: &Outcome, bounds: &Bounds) -> Option<String> {
         [best, shaft, buffer].map(|who| format!("{:.1}", who.bytes as f64 / 1e6));
     let over = [embree, shaft_ns, auto_ns].map(|time| format!("{:.1}", time / bounds.query()));
     Some(format!(
-        "| {} | {:.1} M | {} ({}) | {} | {} | {} | {} | {} | **{:.2}** ({first:.2} {median:.2} {third:.2}) | {:.2} | {:.2} | {embree_mb}, {shaft_mb}, {buffer_mb} | {} |",
+        "| {} | {:.1} M | {} ({}) | {} | {} | {} | {} | {} | **{:.2}** ({first:.2} {median:.2} {third:.2}) | {:.2} | {:.2} | {:.2} | {embree_mb}, {shaft_mb}, {buffer_mb} | {} |",
         outcome.scene,
         outcome.all as f64 / 1e6,
         short(embree),
@@ -151,6 +160,7 @@ fn row(outcome: &Outcome, bounds: &Bounds) -> Option<String> {
         outcome.ratio(shaft),
         outcome.ratio(buffer),
         outcome.ratio(auto),
+        outcome.ratio_with_grid(auto),
         over.join(", "),
     ))
 }

@@ -288,13 +288,14 @@ impl ShadowOptions {
         self.shadows.to_string()
     }
 
-    /// Makes it ready for a scene and a backend with this test, within a memory limit, for about so many queries.
+    /// Makes it ready for a scene and a backend with this test, within a memory limit, for about as many queries as
+    /// are expected.
     pub fn prepare<'a>(
         &self,
         scene: &'a Scene,
         backend: &'a dyn Occlusion,
         engine: &EngineOptions,
-        expected: u64,
+        expected: impl FnOnce() -> u64,
     ) -> Result<Box<dyn Prepared + 'a>, MethodError> {
         // Embree has no exact test, so nobody but Embree gives its bits, and there is nothing to choose among. Shafts answer
         // all rays to lights, exactly, and in less time than Embree's single rays.
@@ -322,7 +323,7 @@ impl ShadowOptions {
             return prepare(plan, scene, backend);
         }
         let auto = Auto::new(plan, engine.test(), scene, backend)?;
-        Ok(Box::new(auto.expecting(expected)))
+        Ok(Box::new(auto.expecting(expected())))
     }
 }
 

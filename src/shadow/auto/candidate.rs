@@ -3,17 +3,16 @@
 use std::sync::OnceLock;
 
 use super::policy::Prices;
-use crate::occlusion::Test;
+use crate::occlusion::{Occlusion, Test};
 use crate::shadow::{Combination, Method, Prepared, SelfShadow, VerdictKind, VerdictSet};
 
-/// Nanoseconds a triangle to group triangles into clusters: 0.15 to 0.25 µs on two cores (docs/methods.md).
-const CLUSTERS: f64 = 200.0;
+/// Nanoseconds a triangle to group triangles into clusters, of all threads together: 0.35 to 0.45 µs (docs/fast.md).
+const CLUSTERS: f64 = 350.0;
 
 /// Nanoseconds a triangle to sort clusters by the directions of a light (docs/growth.md).
 const LIGHT_MAP: f64 = 10.0;
 
-/// Nanoseconds a triangle before a memory can be asked over Embree, which needs a grid beside it; other
-/// backends have cells, but that is not known beforehand.
+/// Nanoseconds a triangle before a memory can be asked over a backend without cells: Embree needs a grid beside it.
 const CELLS: f64 = 1000.0;
 
 /// A method that is prepared when it is worth it.
@@ -33,12 +32,13 @@ impl Candidate<'_> {
         !self.combination.verdicts.is_empty()
     }
 
-    /// What it is expected to take before it answers the first query.
-    pub fn prices(&self, triangles: usize) -> Prices {
+    /// What it is expected to take before it answers the first query, over so many triangles in a backend.
+    pub fn prices(&self, triangles: usize, backend: &dyn Occlusion) -> Prices {
         let triangles = triangles as f64;
         let scene = match self.combination.method {
             Method::Trace if self.needs_clusters() => CLUSTERS,
             Method::Trace => 0.0,
+            _ if backend.has_cells() => 0.0,
             _ => CELLS,
         };
         let light = self.builds_for_lights().then_some(LIGHT_MAP * triangles);

@@ -94,7 +94,8 @@ impl<'a> Auto<'a> {
                 .map(|combination| Candidate { combination, prepared: OnceLock::new() })
                 .collect();
         let triangles = scene.triangles.len();
-        let prices = candidates.iter().map(|candidate| candidate.prices(triangles)).collect();
+        let prices =
+            candidates.iter().map(|candidate| candidate.prices(triangles, backend)).collect();
         let auto = Self {
             backend,
             plan,
@@ -111,7 +112,8 @@ impl<'a> Auto<'a> {
         Ok(auto)
     }
 
-    /// The same, told that about so many queries are to come: what they are worth is prepared at once.
+    /// The same, told that about so many queries are to come ([`crate::render::forecast`] says): what they are worth is
+    /// prepared at once.
     #[must_use]
     pub fn expecting(self, queries: u64) -> Self {
         self.policy.lock().unwrap_or_else(PoisonError::into_inner).expect(queries as f64);
