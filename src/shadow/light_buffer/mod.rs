@@ -110,7 +110,7 @@ impl LightBuffer {
     /// large to a cluster as those before it.
     fn admit_block(&self, members: usize, make: impl FnOnce() -> Block) -> Option<Block> {
         let (bytes, known) = (self.block_bytes.load(Relaxed), self.block_members.load(Relaxed));
-        let likely = if known > 0 { members * bytes / known } else { 0 };
+        let likely = (members * bytes).checked_div(known).unwrap_or(0);
         if self.budget.left() < likely as u64 {
             self.refuse(likely);
             return None;
