@@ -3,11 +3,11 @@
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-use super::engine::{Engine, Job, admit, test_each};
+use super::engine::{Engine, Job, TestEach, admit};
 use super::walk::walk_any;
 use super::{Cell, Occluder, Tally, Visit, VisitMany, Walk};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
-use crate::geometry::lanes::Lanes;
+use crate::geometry::lanes::{Kernel, Lanes};
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 /// Any occluder of each ray.
@@ -25,15 +25,21 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for AnyOccluders<'_> {
         let Self { rays, found, tally } = self;
         let triangles = engine.triangles();
         if W::INLINED && L::COUNT > 4 {
-            let mut visitors =
-                AnyVisitors::<T, L> { triangles, rays, found, tally, kind: PhantomData };
-            engine.walk().walk_many::<L, _>(rays, &mut visitors);
+            if W::IN_PLACE {
+                let mut visitors =
+                    AnyVisitors::<T, L, true> { triangles, rays, found, tally, kind: PhantomData };
+                engine.walk().walk_many::<L, _>(rays, &mut visitors);
+            } else {
+                let mut visitors =
+                    AnyVisitors::<T, L, false> { triangles, rays, found, tally, kind: PhantomData };
+                engine.walk().walk_many::<L, _>(rays, &mut visitors);
+            }
             return;
         }
         for (ray, found) in rays.iter().zip(found) {
             if admit(ray, tally) {
                 tally.traversals += 1;
-                let mut visitor = AnyVisitor::<T, L>::new(triangles, ray, found, tally);
+                let mut visitor = AnyVisitor::<T, L, false>::new(triangles, ray, found, tally);
                 walk_any::<W, L>(engine.walk(), ray, &mut visitor);
             }
         }
@@ -58,14 +64,15 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for OccluderIn<'_> {
         }
         let run = &engine.walk().order()[cell.start as usize..cell.end as usize];
         let mut found = None;
-        let mut visitor = AnyVisitor::<T, L>::new(engine.triangles(), ray, &mut found, tally);
+        let mut visitor =
+            AnyVisitor::<T, L, false>::new(engine.triangles(), ray, &mut found, tally);
         let _ = visitor.visit(cell, run);
         found
     }
 }
 
 /// The visitors of many rays.
-struct AnyVisitors<'a, T, L> {
+struct AnyVisitors<'a, T, L, const IN_PLACE: bool> {
     triangles: &'a Triangles,
     rays: &'a [Ray],
     found: &'a mut [Option<Occluder>],
@@ -73,9 +80,11 @@ struct AnyVisitors<'a, T, L> {
     kind: PhantomData<(T, L)>,
 }
 
-impl<T: TriangleTest, L: Lanes> VisitMany for AnyVisitors<'_, T, L> {
+impl<T: TriangleTest, L: Lanes, const IN_PLACE: bool> VisitMany
+    for AnyVisitors<'_, T, L, IN_PLACE>
+{
     type One<'a>
-        = AnyVisitor<'a, T, L>
+        = AnyVisitor<'a, T, L, IN_PLACE>
     where
         Self: 'a;
 
@@ -87,12 +96,13 @@ impl<T: TriangleTest, L: Lanes> VisitMany for AnyVisitors<'_, T, L> {
     }
 
     #[inline(always)]
-    fn one(&mut self, ray: usize) -> AnyVisitor<'_, T, L> {
+    fn one(&mut self, ray: usize) -> AnyVisitor<'_, T, L, IN_PLACE> {
         AnyVisitor::new(self.triangles, &self.rays[ray], &mut self.found[ray], self.tally)
     }
 }
 
-struct AnyVisitor<'a, T, L> {
+/// `IN_PLACE`: see [`Walk::IN_PLACE`].
+struct AnyVisitor<'a, T, L, const IN_PLACE: bool> {
     triangles: &'a Triangles,
     ray: &'a Ray,
     lanes: RayLanes<L>,
@@ -101,7 +111,7 @@ struct AnyVisitor<'a, T, L> {
     test: PhantomData<T>,
 }
 
-impl<'a, T: TriangleTest, L: Lanes> AnyVisitor<'a, T, L> {
+impl<'a, T: TriangleTest, L: Lanes, const IN_PLACE: bool> AnyVisitor<'a, T, L, IN_PLACE> {
     #[inline(always)]
     fn new(
         triangles: &'a Triangles,
@@ -113,24 +123,26 @@ impl<'a, T: TriangleTest, L: Lanes> AnyVisitor<'a, T, L> {
     }
 }
 
-impl<T: TriangleTest, L: Lanes> Visit for AnyVisitor<'_, T, L> {
+impl<T: TriangleTest, L: Lanes, const IN_PLACE: bool> Visit for AnyVisitor<'_, T, L, IN_PLACE> {
     #[inline(always)]
     fn visit(&mut self, cell: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
         let Self { triangles, ray, lanes, tally, found, .. } = self;
         tally.cells += 1;
         let opaque = triangles.opaque_count();
-        test_each::<T, L>(
+        tally.triangle_tests += ids.len() as u64;
+        let job = TestEach::<T, L, _, _> {
             triangles,
             ray,
             lanes,
             ids,
-            tally,
-            |id| id < opaque,
-            |triangle| {
+            wanted: |id| id < opaque,
+            hit: |triangle| {
                 **found = Some(Occluder { triangle, cell });
                 ControlFlow::Break(())
             },
-        )
+            test: PhantomData,
+        };
+        if IN_PLACE { job.run() } else { L::run(job) }
     }
 
     #[inline(always)]

@@ -143,14 +143,15 @@ pub(super) fn test_each<T: TriangleTest, L: Lanes>(
     L::run(TestEach::<T, L, _, _> { triangles, ray, lanes, ids, wanted, hit, test: PhantomData })
 }
 
-struct TestEach<'a, T, L, Wanted, Hit> {
-    triangles: &'a Triangles,
-    ray: &'a Ray,
-    lanes: &'a RayLanes<L>,
-    ids: &'a [TriangleId],
-    wanted: Wanted,
-    hit: Hit,
-    test: PhantomData<T>,
+/// [`test_each`] as a job, which does not count.
+pub(super) struct TestEach<'a, T, L, Wanted, Hit> {
+    pub triangles: &'a Triangles,
+    pub ray: &'a Ray,
+    pub lanes: &'a RayLanes<L>,
+    pub ids: &'a [TriangleId],
+    pub wanted: Wanted,
+    pub hit: Hit,
+    pub test: PhantomData<T>,
 }
 
 impl<T, L, Wanted, Hit> Kernel for TestEach<'_, T, L, Wanted, Hit>

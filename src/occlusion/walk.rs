@@ -47,6 +47,10 @@ pub trait Walk: Send + Sync + 'static {
     /// wide instruction set, with the test inlined; costs some seconds of compilation each.
     const INLINED: bool = true;
 
+    /// Whether visitors are called from code that is compiled for the lanes, and not from a closure of somebody else's, in which
+    /// every operation of a test would be a call: then tests may be done in place.
+    const IN_PLACE: bool = false;
+
     /// Visits what the ray might meet, nearer parts mostly first; lanes of whatever kind serve the culling.
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V);
 

@@ -229,6 +229,8 @@ impl NestedGrid {
 }
 
 impl Walk for NestedGrid {
+    const IN_PLACE: bool = true;
+
     #[inline(always)]
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
         walk::walk::<L, V>(self, ray, visitor);
