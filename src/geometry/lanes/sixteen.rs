@@ -8,6 +8,10 @@ pub trait Sixteen: Copy {
     fn splat(value: f32) -> Self;
     /// Sixteen values.
     fn load(values: &[f32; 16]) -> Self;
+    /// Writes sixteen values.
+    fn store(self, values: &mut [f32; 16]);
+    /// Sum, rounded.
+    fn add(self, other: Self) -> Self;
     /// Difference, rounded.
     fn sub(self, other: Self) -> Self;
     /// Product, rounded.
@@ -56,6 +60,19 @@ impl<L: Lanes, const N: usize> Sixteen for Several<L, N> {
             *lanes = L::load_from(values, part * L::COUNT);
         }
         Self(parts)
+    }
+    #[inline(always)]
+    fn store(self, values: &mut [f32; 16]) {
+        for (part, lanes) in self.0.into_iter().enumerate() {
+            lanes.store_to(values, part * L::COUNT);
+        }
+    }
+    #[inline(always)]
+    fn add(mut self, other: Self) -> Self {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a = a.add(b);
+        }
+        self
     }
     #[inline(always)]
     fn sub(mut self, other: Self) -> Self {

@@ -6,6 +6,7 @@
 //! what they cost alone.
 
 use super::bundle::{Bundle, Chosen, PACKET, PACKETS, Source, packets_of};
+use super::columns::Columns;
 use super::frustum::{Met, Shaft};
 use super::order::Order;
 use super::planes::{Ground, Planes};
@@ -26,7 +27,7 @@ struct Step {
 }
 
 /// Clusters whose planes are kept: parts of a bundle come to the same ones, and so do bundles in a row. 33 KiB.
-const KEPT: usize = 64;
+const KEPT: usize = 256;
 
 /// Fewer rays of a packet than this go on one by one.
 const COMPANY: u32 = 8;
@@ -37,9 +38,9 @@ pub(super) struct Walker {
     shafts: [Shaft; 2 * PACKETS],
     rays: [PacketRays; PACKETS],
     /// Parts whose shaft is known: a bit each.
-    known: u32,
+    known: u64,
     /// Packets whose rays are.
-    rays_known: u16,
+    rays_known: u32,
     /// Planes of clusters that were tested of late, and which clusters.
     planes: [Planes; KEPT],
     planes_of: [u32; KEPT],
@@ -48,8 +49,9 @@ pub(super) struct Walker {
     steps: Vec<Step>,
     /// The same for a ray that goes on alone.
     rest: Vec<Child>,
-    /// Lent to whoever hands out bundles: all queries, and those that are sorted.
-    pub orders: (Vec<u32>, Order),
+    /// Lent to whoever hands out bundles.
+    pub columns: Columns,
+    pub order: Order,
 }
 
 /// What stays the same for a bundle.
@@ -59,6 +61,29 @@ pub(super) struct Around<'a> {
     pub queries: Chosen<'a>,
     /// Whether a bundle that does not stay together is passed on.
     pub leaves_spread: bool,
+}
+
+/// Of fewer packets, boxes are not looked at before a triangle is cast.
+const WORTH_JUDGING: usize = 4;
+
+/// Beyond this a plane is certain for a whole box; a little more than 1, for the rounding of sums.
+const CERTAIN: f32 = 1.001;
+
+/// Of sixteen packets, a bit each.
+struct Judged {
+    /// Those that a shadow may fall on.
+    touched: u16,
+    /// Those that are in it.
+    covered: u16,
+}
+
+/// The packets of a group that are among these: a bit each.
+#[inline(always)]
+fn part_of_group(group: usize, first: usize, last: usize) -> u16 {
+    let start = group * PACKET;
+    let from = first.max(start) - start;
+    let to = last.min(start + PACKET) - start;
+    (u16::MAX >> (PACKET - (to - from))) << from
 }
 
 const NOBODY: u32 = u32::MAX;
@@ -76,7 +101,8 @@ impl Walker {
             planes_for: None,
             steps: Vec::new(),
             rest: Vec::new(),
-            orders: Default::default(),
+            columns: Columns::default(),
+            order: Order::default(),
         }
     }
 
@@ -294,35 +320,95 @@ impl Walker {
             *plane =
                 [S::splat(x[lane]), S::splat(y[lane]), S::splat(z[lane]), S::splat(value[lane])];
         }
-        let (one, minus_one) = (S::splat(1.0), S::splat(-1.0));
         let (first, last) = packets_of(usize::from(step.part));
-        for packet in first..last {
-            let open = self.bundle.open[packet] & step.met;
-            if open == 0 {
-                continue;
+        if last - first < WORTH_JUDGING {
+            for packet in first..last {
+                self.cast_on(packet, step.met, &planes, unsided, id, around, tally);
             }
-            let [x, y, z] = &self.bundle.origins;
-            let (x, y, z) = (S::load(&x[packet]), S::load(&y[packet]), S::load(&z[packet]));
-            let mut least = S::splat(f32::INFINITY);
-            for [nx, ny, nz, value] in planes {
-                least = least.min(nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, value))));
+            return;
+        }
+        let mut sizes = [[S::splat(0.0); 3]; 4];
+        for (number, sizes) in sizes.iter_mut().enumerate() {
+            for (axis, size) in sizes.iter_mut().enumerate() {
+                *size = S::splat(known.normals[number][axis][lane].abs());
             }
-            let (mut certain, mut missed) = (one.less(least), least.less(minus_one));
-            tally.triangle_tests += u64::from(open.count_ones());
-            if unsided {
-                (certain, missed) = (0, 0);
-            }
-            let mut doubtful = open & !(certain | missed);
-            let mut blocked = open & certain;
-            while doubtful != 0 {
-                let query = doubtful.trailing_zeros();
-                doubtful &= doubtful - 1;
-                if self.settle(packet * PACKET + query as usize, id, around) {
-                    blocked |= 1 << query;
+        }
+        let mut group = first / PACKET;
+        while group * PACKET < last {
+            let Judged { mut touched, covered } = self.judge(group, &planes, &sizes);
+            touched &= part_of_group(group, first, last);
+            while touched != 0 {
+                let place = touched.trailing_zeros() as usize;
+                touched &= touched - 1;
+                let packet = group * PACKET + place;
+                if !unsided && covered & (1 << place) != 0 {
+                    self.bundle.open[packet] = 0;
+                } else {
+                    self.cast_on(packet, step.met, &planes, unsided, id, around, tally);
                 }
             }
-            self.bundle.open[packet] &= !blocked;
+            group += 1;
         }
+    }
+
+    /// Packets of sixteen whose boxes a triangle's shadow touches, and covers.
+    #[inline(always)]
+    fn judge<S: Sixteen>(&self, group: usize, planes: &[[S; 4]; 4], sizes: &[[S; 3]; 4]) -> Judged {
+        let [x, y, z] = &self.bundle.middles[group];
+        let (x, y, z) = (S::load(&x.0), S::load(&y.0), S::load(&z.0));
+        let [half_x, half_y, half_z] = &self.bundle.halves[group];
+        let (half_x, half_y, half_z) = (S::load(&half_x.0), S::load(&half_y.0), S::load(&half_z.0));
+        let infinity = S::splat(f32::INFINITY);
+        let (mut lowest, mut highest) = (infinity, infinity);
+        for ([nx, ny, nz, value], [sx, sy, sz]) in planes.iter().zip(sizes) {
+            let middle = nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, *value)));
+            let reach = sx.mul_add(half_x, sy.mul_add(half_y, sz.mul(half_z)));
+            lowest = lowest.min(middle.sub(reach));
+            highest = highest.min(middle.add(reach));
+        }
+        Judged {
+            touched: !highest.less(S::splat(-CERTAIN)),
+            covered: S::splat(CERTAIN).less(lowest),
+        }
+    }
+
+    /// Casts the shadow of one triangle on the open queries of a packet.
+    #[inline(always)]
+    fn cast_on<S: Sixteen>(
+        &mut self,
+        packet: usize,
+        met: u16,
+        planes: &[[S; 4]; 4],
+        unsided: bool,
+        id: TriangleId,
+        around: &Around,
+        tally: &mut Tally,
+    ) {
+        let open = self.bundle.open[packet] & met;
+        if open == 0 {
+            return;
+        }
+        let [x, y, z] = &self.bundle.origins[packet];
+        let (x, y, z) = (S::load(&x.0), S::load(&y.0), S::load(&z.0));
+        let mut least = S::splat(f32::INFINITY);
+        for [nx, ny, nz, value] in planes {
+            least = least.min(nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, *value))));
+        }
+        let (mut certain, mut missed) = (S::splat(1.0).less(least), least.less(S::splat(-1.0)));
+        tally.triangle_tests += u64::from(open.count_ones());
+        if unsided {
+            (certain, missed) = (0, 0);
+        }
+        let mut doubtful = open & !(certain | missed);
+        let mut blocked = open & certain;
+        while doubtful != 0 {
+            let query = doubtful.trailing_zeros();
+            doubtful &= doubtful - 1;
+            if self.settle(packet * PACKET + query as usize, id, around) {
+                blocked |= 1 << query;
+            }
+        }
+        self.bundle.open[packet] &= !blocked;
     }
 
     /// Decides one triangle for one query.
