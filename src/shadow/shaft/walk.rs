@@ -193,7 +193,8 @@ impl Walker {
         while boxes != 0 {
             let slot = boxes.trailing_zeros() as usize;
             boxes &= boxes - 1;
-            self.steps.push(Step { child: node.child(slot), ..step });
+            let child = node.child(slot);
+            self.steps.push(Step { child, ..step });
         }
     }
 
@@ -242,7 +243,7 @@ impl Walker {
             let lane = rays.trailing_zeros() as usize;
             rays &= rays - 1;
             let ray = around.queries.ray(packet * PACKET + lane);
-            let lanes = RayLanes::<L>::new(ray);
+            let lanes = RayLanes::<L>::of::<Exact>(ray);
             let shaft = Shaft::of_ray(ray, self.bundle.largest);
             self.rest.clear();
             self.rest.push(child);
@@ -255,7 +256,8 @@ impl Walker {
                         while met != 0 {
                             let slot = met.trailing_zeros();
                             met &= met - 1;
-                            self.rest.push(node.child(slot as usize));
+                            let child = node.child(slot as usize);
+                            self.rest.push(child);
                         }
                     }
                     Child::Cluster(cluster) => {
@@ -321,7 +323,8 @@ impl Walker {
                 [S::splat(x[lane]), S::splat(y[lane]), S::splat(z[lane]), S::splat(value[lane])];
         }
         let (first, last) = packets_of(usize::from(step.part));
-        if last - first < WORTH_JUDGING {
+        // Without a side the signs of planes say nothing by themselves.
+        if unsided || last - first < WORTH_JUDGING {
             for packet in first..last {
                 self.cast_on(packet, step.met, &planes, unsided, id, around, tally);
             }
@@ -341,10 +344,10 @@ impl Walker {
                 let place = touched.trailing_zeros() as usize;
                 touched &= touched - 1;
                 let packet = group * PACKET + place;
-                if !unsided && covered & (1 << place) != 0 {
+                if covered & (1 << place) != 0 {
                     self.bundle.open[packet] = 0;
                 } else {
-                    self.cast_on(packet, step.met, &planes, unsided, id, around, tally);
+                    self.cast_on(packet, step.met, &planes, false, id, around, tally);
                 }
             }
             group += 1;
