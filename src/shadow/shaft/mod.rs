@@ -40,7 +40,7 @@ use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally};
 
 /// Bundles whose packets are larger than so many clusters are put together anew, by place.
-const APART: f32 = 0.3;
+const APART: f32 = 0.4;
 
 /// So few packets are not sorted.
 const WORTH_SORTING: usize = 4;
