@@ -5,12 +5,13 @@
 //! figures are nanoseconds a query, preparing included (the grid apart, which all have behind them). *Of the best* is
 //! `auto` over the cheapest single method; *then* is a second pass, with everything built and learnt.
 
+mod common;
 #[path = "growth/contest.rs"]
 mod contest;
 
 use contest::{Answers, Contender, Costs, Queries, measure};
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
-use umbra::render::Settings;
+use umbra::render::{Settings, forecast};
 use umbra::scene::{Scene, load};
 use umbra::shadow::{Auto, Combination, Method, prepare};
 
@@ -35,7 +36,7 @@ fn main() {
     };
     let samples = samples.parse().expect(USAGE);
     for scene in scenes {
-        match load(scene) {
+        match load(&common::path_of(scene).to_string_lossy()) {
             Ok(scene) => row(&scene, samples),
             Err(error) => eprintln!("*** NOT MEASURED: {error} ***"),
         }
@@ -61,10 +62,9 @@ fn row(scene: &Scene, samples: u32) {
             Contender { name, built: 0.0, prepare: Box::new(make) }
         })
         .collect();
-    let count = queries.count as u64;
     let auto = move || {
         let auto = Auto::new(Method::Trace, Test::Exact, scene, grid).expect("it goes");
-        auto.expecting(count)
+        auto.expecting(forecast(scene, grid, &settings))
     };
     let prepare = Box::new(move || Answers::Method(Box::new(auto())));
     contenders.push(Contender { name: "auto", built: 0.0, prepare });

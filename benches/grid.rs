@@ -9,10 +9,9 @@
 
 mod common;
 
-use std::path::PathBuf;
 use std::time::Instant;
 
-use common::{REAL_SCENES, folder};
+use common::{REAL_SCENES, path_of};
 use glam::DVec2;
 use umbra::geometry::Ray;
 use umbra::measure::paper::thread_time;
@@ -82,11 +81,6 @@ fn main() {
 
 /// What ratios are taken of.
 const MEASURES: [&str; 4] = ["shadow", "nearest", "build", "memory"];
-
-fn path_of(name: &str) -> PathBuf {
-    let real = folder().join(name);
-    if real.is_file() { real } else { PathBuf::from(name) }
-}
 
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);

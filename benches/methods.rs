@@ -14,7 +14,7 @@ mod common;
 
 use std::path::{Path, PathBuf};
 
-use common::folder;
+use common::{folder, roomy};
 use umbra::measure::paper::Meter;
 use umbra::measure::recording::Recording;
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
@@ -89,7 +89,7 @@ fn measure(scene: &Scene, settings: &Settings) {
         .into_iter()
         .map(|name| {
             let (prepared, build) = metered(&meter, || {
-                prepare(name, scene, &*engine).expect("the combination makes sense")
+                prepare(roomy(name), scene, &*engine).expect("the combination makes sense")
             });
             let (answers, first) = metered(&meter, || recording.answers(&*prepared));
             assert!(*expected.get_or_insert_with(|| answers.clone()) == answers, "{name} differs");

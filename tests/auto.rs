@@ -60,8 +60,10 @@ fn check_here(scene: &Scene, backend: Backend, test: Test, order: Order) -> BTre
     let Some(engine) = engine(scene, backend, test) else { return answered };
     let traced = prepare(Method::Trace, scene, &*engine).unwrap();
     let expected = picture(scene, &*engine, &*traced, order);
+    // With room for light buffers.
+    let plan = Plan { budget: Some(1 << 30), ..Method::Trace.into() };
     for kind in CLOCKS {
-        let auto = Auto::with_clock(Method::Trace, test, scene, &*engine, clock(kind)).unwrap();
+        let auto = Auto::with_clock(plan, test, scene, &*engine, clock(kind)).unwrap();
         let rendered = picture(scene, &*engine, &auto, order);
         let context = format!("{backend} {test} {order:?}, a clock that {kind}");
         assert!(rendered.film == expected.film, "{context}: the picture");
@@ -217,10 +219,33 @@ fn of_256_lights_of_which_3_are_asked_about_3_are_paid_for() {
     // It is the lights that take them: with all asked, they take many times more.
     let engine = engine(&many, Backend::Grid, Test::Exact).unwrap();
     let light_buffer = umbra::shadow::VerdictKind::LightBuffer;
-    let all = prepare(light_buffer, &many, &*engine).unwrap();
+    let roomy = Plan { budget: Some(1 << 30), ..light_buffer.into() };
+    let all = prepare(roomy, &many, &*engine).unwrap();
     ask_some(&many, &*all, 256, 1);
     let clusters = bytes(&few, "shaft");
     assert!(all.memory() - clusters > 30 * (bytes(&few, "light-buffer") - clusters));
+}
+
+#[test]
+fn unless_more_is_allowed_nothing_takes_more_than_embree_would() {
+    let many = floor(3, 253);
+    let engine = engine(&many, Backend::Grid, Test::Exact).unwrap();
+    let usual = (64 * many.triangles.len()).max(1 << 20);
+    for kind in umbra::shadow::VerdictKind::ALL {
+        let taken = |budget: Option<u64>| {
+            let plan = Plan { budget, ..kind.into() };
+            let prepared = prepare(plan, &many, &*engine).unwrap();
+            ask_some(&many, &*prepared, 256, 1);
+            let notes = prepared.verdicts().into_iter().flat_map(|report| report.notes);
+            (prepared.memory(), notes.collect::<Vec<String>>())
+        };
+        let ((bytes, notes), (roomy, _)) = (taken(None), taken(Some(1 << 30)));
+        assert!(bytes <= usual, "{kind}: {bytes} of {usual}");
+        if roomy > usual {
+            let advised = notes.iter().any(|note| note.contains("--memory"));
+            assert!(advised, "{kind} would take {roomy}, and says {notes:?}");
+        }
+    }
 }
 
 #[test]

@@ -1,7 +1,14 @@
-//! Where the ten real scenes are.
+//! What several benches need: the real scenes, lights to add, the queries of a picture.
 #![allow(dead_code, reason = "each bench uses a part of it")]
 
+pub mod by_place;
+pub mod lights;
+pub mod runs;
+
 use std::path::{Path, PathBuf};
+
+use umbra::scene::default_budget;
+use umbra::shadow::{Combination, Plan};
 
 /// The ten of them, the simplest first.
 pub const REAL_SCENES: [&str; 10] = [
@@ -23,4 +30,15 @@ pub fn folder() -> PathBuf {
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes"),
         PathBuf::from,
     )
+}
+
+/// A method with all the memory that it wants, within a quarter of the machine; else it takes no more than Embree would.
+pub fn roomy(combination: Combination) -> Plan {
+    Plan { budget: Some(default_budget()), ..combination.into() }
+}
+
+/// Where a scene is that may be given by the name of a real one, as a file, or by a built-in name.
+pub fn path_of(name: &str) -> PathBuf {
+    let real = folder().join(name);
+    if real.is_file() { real } else { PathBuf::from(name) }
 }

@@ -7,19 +7,13 @@
 use std::time::Instant;
 
 use rayon::prelude::*;
-use umbra::geometry::Ray;
 use umbra::measure::paper::thread_time;
-use umbra::occlusion::{Occlusion, Tally};
+use umbra::occlusion::Occlusion;
 use umbra::render::{Settings, record};
 use umbra::scene::Scene;
-use umbra::shadow::{Answer, Prepared, ShadowQuery, Trace};
+use umbra::shadow::{Prepared, Trace};
 
-/// Queries about one light that follow each other.
-struct Run {
-    light: usize,
-    queries: Vec<ShadowQuery>,
-    rays: Vec<Ray>,
-}
+use crate::common::runs::{Run, blocked_by_engine, blocked_by_worker};
 
 /// The shadow queries of a picture, unit by unit.
 pub struct Queries {
@@ -33,12 +27,7 @@ impl Queries {
         let (mut units, mut count) = (Vec::new(), 0);
         let recorded = record(scene, seeing, &Trace::new(seeing), settings, |unit| {
             count += unit.len();
-            let runs = unit.chunk_by(|a, b| a.light == b.light).map(|run| {
-                let queries: Vec<ShadowQuery> = run.iter().map(|recorded| recorded.query).collect();
-                let rays = queries.iter().map(|query| query.ray).collect();
-                Run { light: run[0].light as usize, queries, rays }
-            });
-            units.push(runs.collect());
+            units.push(Run::all(&unit));
         });
         recorded.expect("the settings make a picture");
         Self { units, count }
@@ -56,29 +45,10 @@ pub enum Answers<'a> {
 impl Answers<'_> {
     /// How many queries of a unit are blocked.
     fn blocked_in(&self, unit: &[Run]) -> usize {
-        let mut blocked = 0;
         match self {
-            Self::Engine(engine) => {
-                let mut answers = Vec::new();
-                for run in unit {
-                    answers.clear();
-                    answers.resize(run.rays.len(), false);
-                    engine.occluded_many(&run.rays, &mut answers, &mut Tally::default());
-                    blocked += answers.iter().filter(|blocked| **blocked).count();
-                }
-            }
-            Self::Method(prepared) => {
-                let mut worker = prepared.worker();
-                let mut answers = Vec::new();
-                for run in unit {
-                    answers.clear();
-                    answers.resize(run.queries.len(), Answer::default());
-                    worker.answer(run.light, &run.queries, &mut answers);
-                    blocked += answers.iter().filter(|answer| answer.blocked).count();
-                }
-            }
+            Self::Engine(engine) => blocked_by_engine(*engine, unit),
+            Self::Method(prepared) => blocked_by_worker(&mut *prepared.worker(), unit),
         }
-        blocked
     }
 
     fn bytes(&self) -> usize {

@@ -1,15 +1,15 @@
 //! What grows, and who is asked.
 
-use glam::DVec3;
 use umbra::measure::paper::process_time;
 use umbra::occlusion::{
     Backend, BuildOptions, Embree, EmbreeOptions, Occlusion, PacketWidth, Test, build,
 };
 use umbra::render::Settings;
-use umbra::scene::{Light, Scene, builtin};
+use umbra::scene::{Scene, builtin};
 use umbra::shadow::{Auto, Combination, Method, prepare};
 
 use super::contest::{Answers, Contender, Costs, Queries, measure};
+use crate::common::{lights, roomy};
 
 /// Seconds that a contender may take for a round of a point; then it is left out of greater ones.
 const PATIENCE: f64 = 20.0;
@@ -25,7 +25,7 @@ pub struct Curve {
 
 pub const ALL: [Curve; 4] = [
     Curve { name: "triangles", axis: "triangles →", measure: triangles },
-    Curve { name: "lights", axis: "lights →", measure: lights },
+    Curve { name: "lights", axis: "lights →", measure: more_lights },
     Curve { name: "samples", axis: "samples a pixel →", measure: samples },
     Curve { name: "threads", axis: "threads →", measure: threads },
 ];
@@ -86,7 +86,9 @@ impl Engines {
         let (grid, embree) = (&*self.grid.0, &self.embree.0);
         let method = move |combination: Combination| -> Box<dyn Fn() -> Answers<'a> + Sync + 'a> {
             Box::new(move || {
-                Answers::Method(prepare(combination, scene, grid).expect("it goes with the grid"))
+                Answers::Method(
+                    prepare(roomy(combination), scene, grid).expect("it goes with the grid"),
+                )
             })
         };
         let made: Vec<Option<Contender<'a>>> = CONTENDERS
@@ -192,38 +194,16 @@ fn triangles(rounds: usize) -> Vec<Point> {
 }
 
 /// More and more lights under the ceiling of the chair room.
-fn lights(rounds: usize) -> Vec<Point> {
+fn more_lights(rounds: usize) -> Vec<Point> {
     let mut out = Out::new(rounds);
     [1, 4, 16, 64, 256]
         .into_iter()
         .map(|count| {
             let mut draft = builtin::draft("chair-room").expect("it is built in");
-            draft.lights = lattice(&draft.lights, count);
+            draft.lights = lights::lattice(&draft.lights, count);
             let scene = draft.finish().expect("it is whole");
             let engines = Engines::over(&scene, 1);
             out.point(&scene, count, &engines, &settings(96, 72, 1), 1)
-        })
-        .collect()
-}
-
-/// So many point lights, spread evenly where the scene has its own.
-fn lattice(own: &[Light], count: usize) -> Vec<Light> {
-    let places: Vec<DVec3> = own
-        .iter()
-        .filter_map(|light| match light {
-            Light::Point { position, .. } => Some(*position),
-            _ => None,
-        })
-        .collect();
-    let low = places.iter().copied().reduce(DVec3::min).expect("it has point lights");
-    let high = places.iter().copied().reduce(DVec3::max).expect("it has point lights");
-    let side = (count as f64).sqrt().ceil() as usize;
-    (0..count)
-        .map(|number| {
-            let along = |place: usize| (place as f64 + 0.5) / side as f64;
-            let (x, z) = (along(number % side), along(number / side));
-            let position = low + (high - low) * DVec3::new(x, 0.5, z);
-            Light::Point { position, intensity: glam::Vec3::ONE }
         })
         .collect()
 }

@@ -7,6 +7,8 @@
 //! contender that takes too long for one point is left out of those after it, and a scene that memory does not hold
 //! ends its curve; both are said.
 
+#[path = "../common/mod.rs"]
+mod common;
 mod contest;
 mod curves;
 mod figures;

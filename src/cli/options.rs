@@ -45,7 +45,8 @@ pub(super) struct EngineOptions {
     #[arg(long, conflicts_with = "uniform")]
     pub lazy: bool,
     /// Most memory that engine and shadow method may take, like 512M or 2G: what is prepared becomes coarser
-    /// or steps aside, and says so; a quarter of the machine if not given
+    /// or steps aside, and says so; if not given, the shadow method takes no more than Embree's structure would, and
+    /// both together no more than a quarter of the machine
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
     pub memory: Option<u64>,
     /// Threads; all processors if not given
@@ -287,13 +288,14 @@ impl ShadowOptions {
         self.shadows.to_string()
     }
 
-    /// Makes it ready for a scene and a backend with this test, within a memory limit, for about so many queries.
+    /// Makes it ready for a scene and a backend with this test, within a memory limit, for about as many queries as
+    /// are expected.
     pub fn prepare<'a>(
         &self,
         scene: &'a Scene,
         backend: &'a dyn Occlusion,
         engine: &EngineOptions,
-        expected: u64,
+        expected: impl FnOnce() -> u64,
     ) -> Result<Box<dyn Prepared + 'a>, MethodError> {
         // Embree has no exact test, so nobody but Embree gives its bits, and there is nothing to choose among. Shafts answer
         // all rays to lights, exactly, and in less time than Embree's single rays.
@@ -321,7 +323,7 @@ impl ShadowOptions {
             return prepare(plan, scene, backend);
         }
         let auto = Auto::new(plan, engine.test(), scene, backend)?;
-        Ok(Box::new(auto.expecting(expected)))
+        Ok(Box::new(auto.expecting(expected())))
     }
 }
 

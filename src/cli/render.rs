@@ -12,7 +12,8 @@ use super::options::{
 };
 use super::progress::with_bar;
 use crate::render::{
-    Film, Order, Picture, Progress, Rendered, Settings, Shown, Statistics, render, write_picture,
+    Film, Order, Picture, Progress, Rendered, Settings, Shown, Statistics, forecast, render,
+    write_picture,
 };
 use crate::scene::{Dropped, builtin};
 use crate::shadow::{LightChoices, Settled, VerdictReport};
@@ -155,8 +156,7 @@ impl Render {
         let (backend, build_seconds) = self.engine.build(&scene)?;
         let start = Instant::now();
         let pixels = u64::from(settings.width) * u64::from(settings.height);
-        let samples = u64::from(settings.samples).pow(2);
-        let expected = pixels * samples * scene.lights.len() as u64;
+        let expected = || forecast(&scene, &*backend, settings);
         let shadows = self.shadows.prepare(&scene, &*backend, &self.engine, expected)?;
         let progress = Progress::default();
         let rendered = with_bar(pixels, &progress, || {

@@ -127,6 +127,11 @@ pub trait Occlusion: Any + Send + Sync {
     /// The triangles in an order that keeps each cell together; a triangle may recur.
     fn order(&self) -> &[TriangleId];
 
+    /// Whether its cells are there; if not, they are made when they are first needed.
+    fn has_cells(&self) -> bool {
+        true
+    }
+
     /// Bytes held, triangles apart.
     fn memory(&self) -> usize;
 }

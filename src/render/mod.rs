@@ -8,6 +8,7 @@
 
 mod answers;
 mod film;
+mod forecast;
 mod label;
 mod legend;
 mod order;
@@ -21,6 +22,7 @@ mod whitted;
 
 pub use answers::{AnswerMap, Answered, Shown};
 pub use film::{Film, ShadowMask};
+pub use forecast::forecast;
 pub use legend::{UNASKED, from_srgb, with_legend};
 pub use order::{Order, Place};
 pub use output::{OutputError, Picture, encode_picture, write_picture};

@@ -11,7 +11,7 @@ use super::{
     Verdicts, cache_tree, woo,
 };
 use crate::occlusion::Occlusion;
-use crate::scene::{Scene, default_budget};
+use crate::scene::Scene;
 
 /// What keeps a shadow ray from meeting the triangle that it starts on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum)]
@@ -28,7 +28,7 @@ pub enum SelfShadow {
 pub struct Plan {
     /// The verdicts that are asked first.
     pub verdicts: VerdictSet,
-    /// Bytes that they may take together with the backend; [`default_budget`] if not given.
+    /// Bytes that they may take together with the backend. If not given, they alone may take what Embree's structure would.
     pub budget: Option<u64>,
     /// The memory that is asked next.
     pub method: Method,
@@ -68,8 +68,7 @@ impl Plan {
 
     /// What its verdicts are prepared from; they share what memory the backend leaves of the budget.
     pub(super) fn stock<'a>(&self, scene: &'a Scene, backend: &dyn Occlusion) -> Stock<'a> {
-        let limit = self.budget.unwrap_or_else(default_budget);
-        let budget = Budget::new(limit.saturating_sub(backend.memory() as u64));
+        let budget = Budget::beside(backend, scene, self.budget);
         Stock::new(scene, Arc::new(budget), self.verdicts)
     }
 }

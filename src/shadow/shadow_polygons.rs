@@ -58,8 +58,9 @@ pub(super) struct ShadowPolygons {
     budget: Arc<Budget>,
     nanoseconds: AtomicU64,
     region_bytes: AtomicU64,
-    /// Voxels that there was no memory for.
+    /// Voxels that there was no memory for, and the bytes of their regions.
     refused: AtomicU64,
+    refused_bytes: AtomicU64,
 }
 
 impl ShadowPolygons {
@@ -78,6 +79,7 @@ impl ShadowPolygons {
             nanoseconds: AtomicU64::new(0),
             region_bytes: AtomicU64::new(0),
             refused: AtomicU64::new(0),
+            refused_bytes: AtomicU64::new(0),
         }
     }
 
@@ -89,6 +91,7 @@ impl ShadowPolygons {
         let region = region?;
         if !self.budget.take(region.memory()) {
             self.refused.fetch_add(1, Relaxed);
+            self.refused_bytes.fetch_add(region.memory() as u64, Relaxed);
             return None;
         }
         self.region_bytes.fetch_add(region.memory() as u64, Relaxed);
@@ -154,7 +157,8 @@ impl Verdict for ShadowPolygons {
         match self.refused.load(Relaxed) {
             0 => {}
             refused => notes.push(format!(
-                "the memory limit left {refused} voxels without polygons; their queries are traced"
+                "the memory limit left {refused} voxels without polygons, and their queries are traced; {}",
+                self.budget.advice(self.refused_bytes.load(Relaxed))
             )),
         }
         notes

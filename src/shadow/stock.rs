@@ -7,8 +7,8 @@ use super::{Budget, VerdictSet};
 use crate::occlusion::Clusters;
 use crate::scene::Scene;
 
-/// Bytes of clusters and their tree to a triangle, somewhat more than they turn out to take.
-const CLUSTER_BYTES: usize = 48;
+/// Bytes of clusters and their tree: to a triangle (they turn out to take about 50), and besides.
+const CLUSTER_BYTES: [usize; 2] = [56, 1024];
 
 /// The scene, the memory that is left, and what several verdicts use.
 pub(super) struct Stock<'a> {
@@ -40,24 +40,37 @@ impl<'a> Stock<'a> {
     pub fn clusters(&self) -> (Option<Arc<Clusters>>, usize) {
         let mut bytes = 0;
         let clusters = self.shared.clusters.get_or_init(|| {
-            let estimate = CLUSTER_BYTES * self.scene.triangles.len();
-            let clusters = self.budget.take(estimate).then(|| Clusters::new(&self.scene.triangles));
-            bytes = clusters.as_ref().map_or(0, Clusters::memory);
-            clusters.map(Arc::new)
+            let opaque = self.scene.triangles.opaque_count() as usize;
+            let clusters = self.within_budget(opaque, || Clusters::new(&self.scene.triangles));
+            bytes = clusters.as_ref().map_or(0, |clusters| clusters.memory());
+            clusters
         });
         (clusters.clone(), bytes)
+    }
+
+    /// Clusters of so many triangles, if the memory suffices.
+    fn within_budget(
+        &self,
+        count: usize,
+        make: impl FnOnce() -> Clusters,
+    ) -> Option<Arc<Clusters>> {
+        let [a_triangle, besides] = CLUSTER_BYTES;
+        let estimate = a_triangle * count + besides;
+        self.budget.take(estimate).then(|| {
+            let clusters = make();
+            self.budget.give_back(estimate.saturating_sub(clusters.memory()));
+            Arc::new(clusters)
+        })
     }
 
     /// Clusters of the transparent triangles, if there are any and the memory suffices; and their bytes.
     pub fn glass(&self) -> Option<(Arc<Clusters>, usize)> {
         let triangles = &self.scene.triangles;
         let count = triangles.len() - triangles.opaque_count() as usize;
-        let wanted = count > 0 && self.budget.take(CLUSTER_BYTES * count);
-        wanted.then(|| {
-            let clusters = Clusters::of_transparent(triangles);
-            let bytes = clusters.memory();
-            (Arc::new(clusters), bytes)
-        })
+        let make = || Clusters::of_transparent(triangles);
+        let clusters = (count > 0).then(|| self.within_budget(count, make)).flatten()?;
+        let bytes = clusters.memory();
+        Some((clusters, bytes))
     }
 
     /// The one light buffer of all sets of verdicts that have it.

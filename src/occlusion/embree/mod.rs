@@ -182,6 +182,10 @@ impl Occlusion for Embree {
         self.companion().at_least.order()
     }
 
+    fn has_cells(&self) -> bool {
+        self.companion.get().is_some()
+    }
+
     fn memory(&self) -> usize {
         self.bytes + self.companion.get().map_or(0, |companion| companion.at_least.memory())
     }

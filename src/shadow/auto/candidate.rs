@@ -3,17 +3,16 @@
 use std::sync::OnceLock;
 
 use super::policy::Prices;
-use crate::occlusion::Test;
+use crate::occlusion::{Occlusion, Test};
 use crate::shadow::{Combination, Method, Prepared, SelfShadow, VerdictKind, VerdictSet};
 
-/// Nanoseconds a triangle to group triangles into clusters: 0.15 to 0.25 µs on two cores (docs/methods.md).
-const CLUSTERS: f64 = 200.0;
+/// Nanoseconds a triangle to group triangles into clusters, of all threads together: 0.35 to 0.45 µs (docs/fast.md).
+const CLUSTERS: f64 = 350.0;
 
 /// Nanoseconds a triangle to sort clusters by the directions of a light (docs/growth.md).
 const LIGHT_MAP: f64 = 10.0;
 
-/// Nanoseconds a triangle before a memory can be asked over Embree, which needs a grid beside it; other
-/// backends have cells, but that is not known beforehand.
+/// Nanoseconds a triangle before a memory can be asked over a backend without cells: Embree needs a grid beside it.
 const CELLS: f64 = 1000.0;
 
 /// A method that is prepared when it is worth it.
@@ -33,12 +32,13 @@ impl Candidate<'_> {
         !self.combination.verdicts.is_empty()
     }
 
-    /// What it is expected to take before it answers the first query.
-    pub fn prices(&self, triangles: usize) -> Prices {
+    /// What it is expected to take before it answers the first query, over so many triangles in a backend.
+    pub fn prices(&self, triangles: usize, backend: &dyn Occlusion) -> Prices {
         let triangles = triangles as f64;
         let scene = match self.combination.method {
             Method::Trace if self.needs_clusters() => CLUSTERS,
             Method::Trace => 0.0,
+            _ if backend.has_cells() => 0.0,
             _ => CELLS,
         };
         let light = self.builds_for_lights().then_some(LIGHT_MAP * triangles);
@@ -48,19 +48,23 @@ impl Candidate<'_> {
 
 /// Who is worth asking; first the one that needs nothing.
 ///
+/// Light buffers are among them only if more memory is allowed than usual (`roomy`): where they win, in lattices of small
+/// triangles, they take two to four times what Embree does, and half of one wins nothing.
+///
 /// A verdict's answers are those of exact arithmetic, so verdicts stand before that test only; and they do not go
 /// with leaving out the triangle that a ray starts on. The other verdicts and memories win nowhere that one of these
 /// does not win by more (docs/methods.md).
-pub(super) fn candidates(test: Test, self_shadow: SelfShadow) -> Vec<Combination> {
+pub(super) fn candidates(test: Test, self_shadow: SelfShadow, roomy: bool) -> Vec<Combination> {
     use VerdictKind::{LightBuffer, Shaft};
     let mut all = vec![Combination::default()];
     if test == Test::Exact && self_shadow == SelfShadow::Offset {
-        let sets = [
-            VerdictSet::NONE.with(Shaft),
-            VerdictSet::NONE.with(Shaft).with(LightBuffer),
-            VerdictSet::NONE.with(LightBuffer),
-        ];
-        all.extend(sets.map(|verdicts| Combination { verdicts, ..Combination::default() }));
+        let shaft = VerdictSet::NONE.with(Shaft);
+        let mut sets = vec![shaft];
+        if roomy {
+            sets.extend([shaft.with(LightBuffer), VerdictSet::NONE.with(LightBuffer)]);
+        }
+        let alone = |verdicts| Combination { verdicts, ..Combination::default() };
+        all.extend(sets.into_iter().map(alone));
     } else {
         all.push(Method::ObjectCache.into());
     }

@@ -1,7 +1,7 @@
 //! `auto`: asks for each batch of queries whichever method is cheapest at its light and place, from what was seen
 //! while rendering.
 //!
-//! The candidates are tracing, shafts, light buffers, both together, and a memory. A time stamp before and after
+//! The candidates are tracing, shafts, a memory, and, if more memory is allowed than usual, light buffers alone and with shafts. A time stamp before and after
 //! a batch of some hundred queries says what a query costs; `policy` decides from that whom to ask next, when to try another,
 //! and when a structure is worth building, with a bound on what it may lose against the best single
 //! candidate in hindsight. A structure that grows while it answers spoils the measure: when a batch made it grow,
@@ -88,12 +88,14 @@ impl<'a> Auto<'a> {
         let plan = Plan { verdicts: VerdictSet::NONE, ..plan.into() };
         plan.check()?;
         let lights = scene.lights.len();
-        let candidates: Vec<Candidate<'a>> = candidate::candidates(test, plan.self_shadow)
-            .into_iter()
-            .map(|combination| Candidate { combination, prepared: OnceLock::new() })
-            .collect();
+        let candidates: Vec<Candidate<'a>> =
+            candidate::candidates(test, plan.self_shadow, plan.budget.is_some())
+                .into_iter()
+                .map(|combination| Candidate { combination, prepared: OnceLock::new() })
+                .collect();
         let triangles = scene.triangles.len();
-        let prices = candidates.iter().map(|candidate| candidate.prices(triangles)).collect();
+        let prices =
+            candidates.iter().map(|candidate| candidate.prices(triangles, backend)).collect();
         let auto = Self {
             backend,
             plan,
@@ -110,7 +112,8 @@ impl<'a> Auto<'a> {
         Ok(auto)
     }
 
-    /// The same, told that about so many queries are to come: what they are worth is prepared at once.
+    /// The same, told that about so many queries are to come ([`crate::render::forecast`] says): what they are worth is
+    /// prepared at once.
     #[must_use]
     pub fn expecting(self, queries: u64) -> Self {
         self.policy.lock().unwrap_or_else(PoisonError::into_inner).expect(queries as f64);

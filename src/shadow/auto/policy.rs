@@ -3,7 +3,7 @@
 //! Three rules:
 //!
 //! 1. **Follow the leader.** Whoever is estimated to be cheapest at this light and place is asked.
-//! 2. **Try the others, rarely.** After `b` batches, trials may have cost more than the leader would have by 1/√b of
+//! 2. **Try the others, rarely.** After `b` batches of 256 queries, trials may have cost more than the leader would have by 1/√b of
 //!    all time spent so far, no more. The candidate on which least was spent comes first: those nearly as good are
 //!    tried often, those far worse hardly ever.
 //! 3. **Rent before you buy** (the ski-rental rule; Karlin, Manasse, Rudolph, Sleator 1988). What has to be built
@@ -11,13 +11,17 @@
 //!    time spent is the price; for a light, as soon as its queries would have been cheaper by it. A
 //!    candidate that was never seen is taken to be cheap there, so that it gets a chance.
 //!
-//!    Told how many queries will come, it builds for the scene at once if half of what they would cost without is the
-//!    price (half, as that word may be too large), and else not before more have come than were said to.
+//!    Told how many queries will come, it builds for the scene as soon as 0.62 of what those still to come would cost without
+//!    is the price, and else not before more have come than were said to. That share is the golden one: building in vain
+//!    and failing to build then cost the same, 1.62 times the best. While few batches have been seen, it must be clearer: by
+//!    three times after the first two, of which the caches knew nothing yet.
+//!
+//!    What was bought is asked next, a whole call: so it is known at once what it is worth.
 //!
 //! **Bound.** With costs that stay the same, the time of all queries is at most (2 + 1/√b) times that of the best single
 //! candidate in hindsight, building included, and (1 + 1/√b) times where nothing has to be built; and besides,
 //! one batch of each candidate. Rule 3 gives the 2: when a structure is bought for B, B was lost by not having it, and
-//! the best in hindsight has paid B or that; what is built on a true word costs half of the best at most. Rule 2 gives
+//! the best in hindsight has paid B or that; on a true word it is 1.62, once some batches have been seen. Rule 2 gives
 //! the rest. Costs that change are followed, as the estimates
 //! fade (`estimate`), without a bound.
 //!
@@ -27,8 +31,14 @@ use std::collections::HashMap;
 
 use super::estimate::Level;
 
-/// Part of the queries that are said to come that is counted on.
-const TRUSTED: f64 = 0.5;
+/// Queries of a batch, in which time is counted.
+const BATCH: f64 = 256.0;
+
+/// The share of what queries to come would cost without it for which something is built: the golden one.
+const WORTH: f64 = 0.618;
+
+/// Batches after which half of what they say of those to come is believed.
+const DOUBT: f64 = 4.0;
 
 /// A batch counts for at most so many times what was expected: what takes longer was interrupted, by another
 /// program or by the system.
@@ -108,6 +118,8 @@ pub(super) struct Policy {
     prices: Vec<Prices>,
     /// Nanoseconds that preparing took; none if it has not been prepared.
     prepared: Vec<Option<f64>>,
+    /// The one that was last prepared for a price.
+    bought: Option<usize>,
     scene: Level,
     lights: Vec<AtLight>,
     batches: f64,
@@ -132,6 +144,7 @@ impl Policy {
         Self {
             prices,
             prepared,
+            bought: None,
             scene: Level::new(count),
             lights: (0..lights).map(|_| at_light()).collect(),
             batches: 0.0,
@@ -151,19 +164,27 @@ impl Policy {
     pub fn worth_preparing(&self) -> Option<usize> {
         let paid: f64 = self.prepared.iter().flatten().sum();
         let worth = if self.queries < self.expected {
-            TRUSTED * self.spent * self.expected / self.queries.max(1.0)
+            let believed = self.batches / (self.batches + DOUBT);
+            let to_come = self.expected - self.queries;
+            WORTH * believed * self.spent / self.queries.max(1.0) * to_come
         } else {
             self.spent
         };
         let waiting = (0..self.prices.len()).filter(|&c| self.prepared[c].is_none());
-        waiting
-            .min_by(|&a, &b| self.prices[a].scene.total_cmp(&self.prices[b].scene))
-            .filter(|&c| self.batches > 0.0 && worth >= paid + self.prices[c].scene)
+        waiting.min_by(|&a, &b| self.prices[a].scene.total_cmp(&self.prices[b].scene)).filter(
+            |&c| {
+                let price = self.prices[c].scene;
+                self.batches > 0.0 && (price == 0.0 || worth >= paid + price)
+            },
+        )
     }
 
     /// A candidate has been prepared; those that share what it needed will cost less.
     pub fn prepare(&mut self, candidate: usize, nanoseconds: f64, others: &[usize]) {
         self.prepared[candidate] = Some(nanoseconds);
+        if self.prices[candidate].scene > 0.0 {
+            self.bought = Some(candidate);
+        }
         for &other in others {
             self.prices[other].scene = 0.0;
         }
@@ -174,6 +195,10 @@ impl Policy {
         let estimates: Vec<Option<f64>> =
             (0..self.prices.len()).map(|c| self.estimate(c, light, place)).collect();
         let ready = |&c: &usize| self.prepared[c].is_some() && self.affordable(c, light);
+        let unseen = |&c: &usize| estimates[c].is_none();
+        if let Some(candidate) = self.bought.filter(unseen).filter(ready) {
+            return Choice { candidate, reason: Reason::Leads };
+        }
         let cost = |c: usize| estimates[c].unwrap_or(f64::INFINITY);
         let leader = (0..estimates.len())
             .filter(ready)
@@ -214,7 +239,7 @@ impl Policy {
             self.trials += excess;
             self.lights[light].accounts[candidate].trials += excess;
         }
-        self.batches += 1.0;
+        self.batches += queries / BATCH;
         self.queries += queries;
         self.spent += nanoseconds + building;
         for c in 0..self.prices.len() {

@@ -1,8 +1,6 @@
 //! What one light sees, block by block; each block is made when a query first asks it.
 
 use std::sync::OnceLock;
-use std::sync::atomic::Ordering::Relaxed;
-use std::time::Instant;
 
 use super::LightBuffer;
 use super::block::{Asked, Block};
@@ -98,10 +96,9 @@ impl LightMap {
         let side = 2.0 / self.side as f32;
         let low = place.map(|place| place as f32 * side - 1.0);
         let members = &self.members[self.starts[index] as usize..self.starts[index + 1] as usize];
-        let start = Instant::now();
-        let block = Block::new(&self.view, face, low, side, clusters, members);
-        buffer.nanoseconds.fetch_add(start.elapsed().as_nanos() as u64, Relaxed);
-        buffer.admit(block.memory()).then_some(block)
+        buffer.admit_block(members.len(), || {
+            Block::new(&self.view, face, low, side, clusters, members)
+        })
     }
 
     /// Bytes held, blocks apart.

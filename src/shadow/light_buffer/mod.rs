@@ -25,7 +25,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use block::Asked;
+use block::{Asked, Block};
 use map::LightMap;
 
 use super::stock::Stock;
@@ -47,9 +47,13 @@ pub(super) struct LightBuffer {
     arithmetic: Arithmetic,
     budget: Arc<Budget>,
     bytes: AtomicUsize,
+    /// Of blocks: their bytes, and the clusters in them.
+    block_bytes: AtomicUsize,
+    block_members: AtomicUsize,
     nanoseconds: AtomicU64,
-    /// Parts of the view that did not fit into the budget.
+    /// Parts of the view that did not fit into the budget, and their bytes.
     refused: AtomicU64,
+    refused_bytes: AtomicU64,
 }
 
 impl LightBuffer {
@@ -65,8 +69,11 @@ impl LightBuffer {
             arithmetic: Arithmetic::of_this_cpu(),
             budget: budget.clone(),
             bytes: AtomicUsize::new(bytes),
+            block_bytes: AtomicUsize::new(0),
+            block_members: AtomicUsize::new(0),
             nanoseconds: AtomicU64::new(0),
             refused: AtomicU64::new(0),
+            refused_bytes: AtomicU64::new(0),
         }
     }
 
@@ -89,9 +96,31 @@ impl LightBuffer {
         if fits {
             self.bytes.fetch_add(bytes, Relaxed);
         } else {
-            self.refused.fetch_add(1, Relaxed);
+            self.refuse(bytes);
         }
         fits
+    }
+
+    fn refuse(&self, bytes: usize) {
+        self.refused.fetch_add(1, Relaxed);
+        self.refused_bytes.fetch_add(bytes as u64, Relaxed);
+    }
+
+    /// A block of so many clusters, if it fits into the budget. One that takes too much is not even made if it is as
+    /// large to a cluster as those before it.
+    fn admit_block(&self, members: usize, make: impl FnOnce() -> Block) -> Option<Block> {
+        let (bytes, known) = (self.block_bytes.load(Relaxed), self.block_members.load(Relaxed));
+        let likely = (members * bytes).checked_div(known).unwrap_or(0);
+        if self.budget.left() < likely as u64 {
+            self.refuse(likely);
+            return None;
+        }
+        let start = Instant::now();
+        let block = make();
+        self.nanoseconds.fetch_add(start.elapsed().as_nanos() as u64, Relaxed);
+        self.block_bytes.fetch_add(block.memory(), Relaxed);
+        self.block_members.fetch_add(members, Relaxed);
+        self.admit(block.memory()).then_some(block)
     }
 
     #[inline(always)]
@@ -167,7 +196,8 @@ impl Verdict for LightBuffer {
                     .to_owned(),
             );
         } else if refused > 0 {
-            notes.push(format!("light-buffer leaves {refused} parts of what lights see to the backend: they do not fit into the memory"));
+            let advice = self.budget.advice(self.refused_bytes.load(Relaxed));
+            notes.push(format!("light-buffer leaves {refused} parts of what lights see to the backend: they do not fit into the memory; {advice}"));
         }
         notes
     }

@@ -53,15 +53,11 @@ impl Voxels {
         bytes_a_voxel: f64,
         budget: &Budget,
     ) -> Option<(Self, bool)> {
-        /// With fewer voxels than this, nothing is worth preparing.
-        const FEWEST: f64 = 64.0;
-        let wanted = (density * triangles.len() as f64).clamp(FEWEST, MOST);
+        let wanted = wanted(triangles, density);
         let mut voxels = wanted;
         while voxels >= FEWEST {
-            let bytes = voxels * (VOXEL_BYTES + bytes_a_voxel);
-            let least = bytes + triangles.len() as f64 * LISTED_BYTES;
             // A grid that will not fit need not be tried.
-            if least <= budget.left() as f64 {
+            if Self::bytes(triangles, voxels, bytes_a_voxel) <= budget.left() as f64 {
                 let options = GridOptions::uniform(triangles, voxels as usize);
                 let grid = Grid::new(triangles, options);
                 let held = (grid.voxel_count() as f64 * bytes_a_voxel) as usize;
@@ -72,6 +68,11 @@ impl Voxels {
             voxels /= COARSER;
         }
         None
+    }
+
+    /// Bytes of so many voxels, at least.
+    fn bytes(triangles: &Triangles, voxels: f64, bytes_a_voxel: f64) -> f64 {
+        voxels * (VOXEL_BYTES + bytes_a_voxel) + triangles.len() as f64 * LISTED_BYTES
     }
 
     /// The same, and which triangles lie beyond whose edges; says in `notes` what the budget does not allow.
@@ -89,14 +90,22 @@ impl Voxels {
             {
                 if coarser {
                     let [x, y, z] = voxels.level().resolution;
-                    notes.push(format!("{x} by {y} by {z} voxels only, to keep the memory limit"));
+                    let wanted = Self::bytes(triangles, wanted(triangles, density), bytes_a_voxel);
+                    let advice =
+                        budget.advice((wanted as u64).saturating_sub(voxels.memory() as u64));
+                    notes.push(format!(
+                        "{x} by {y} by {z} voxels only, to keep the memory limit; {advice}"
+                    ));
                 }
                 return Some((voxels, Neighbours::new(triangles)));
             }
             budget.give_back(bytes);
         }
-        notes
-            .push(format!("steps aside: the memory limit leaves {left} bytes, too few for voxels"));
+        let wanted = Self::bytes(triangles, wanted(triangles, density), bytes_a_voxel);
+        let advice = budget.advice(bytes as u64 + wanted as u64);
+        notes.push(format!(
+            "steps aside: the memory limit leaves {left} bytes, too few for voxels; {advice}"
+        ));
         None
     }
 
@@ -156,6 +165,14 @@ impl Voxels {
     pub fn occluder(&self, ray: &Ray, tally: &mut Tally) -> Option<TriangleId> {
         self.exact.occluder(ray, tally).map(|found| found.triangle)
     }
+}
+
+/// With fewer voxels than this, nothing is worth preparing.
+const FEWEST: f64 = 64.0;
+
+/// Voxels of a grid with so many to a triangle.
+fn wanted(triangles: &Triangles, density: f64) -> f64 {
+    (density * triangles.len() as f64).clamp(FEWEST, MOST)
 }
 
 /// Most voxels of a grid: what is decided a voxel would take longer than rays could win back.

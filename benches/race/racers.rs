@@ -1,0 +1,187 @@
+//! Who takes part: Embree in all its ways, and ours over the grid.
+
+use umbra::measure::paper::process_time;
+use umbra::occlusion::{Embree, EmbreeOptions, Occlusion, PacketWidth, Quality, Test};
+use umbra::render::{Settings, forecast};
+use umbra::scene::Scene;
+use umbra::shadow::{Auto, Combination, Method, Prepared, Shadows, prepare};
+
+use super::common::by_place::{ByPlace, Sorted};
+use super::common::runs::{Run, blocked_by_engine, blocked_by_worker};
+use super::table::Figures;
+
+/// Who runs with umbra's grid behind: by the names of the command line.
+const OURS: [&str; 5] = ["trace", "light-buffer", "shaft", "shaft+light-buffer", "auto"];
+
+/// Everything is prepared so many times, and the least time counts; but not again after so many nanoseconds.
+const PREPARATIONS: usize = 3;
+const PATIENCE: u64 = 2_000_000_000;
+
+/// What Embree builds.
+const BUILDS: [(&str, bool, Quality); 3] = [
+    ("default", false, Quality::Medium),
+    ("default high", false, Quality::High),
+    ("robust", true, Quality::Medium),
+];
+
+/// How it is asked: packets, whether as coherent ones, and which rays are sorted by place before.
+const WAYS: [(&str, PacketWidth, bool, Option<Sorted>); 8] = [
+    ("single", PacketWidth::One, false, None),
+    ("8 coherent", PacketWidth::Eight, true, None),
+    ("16 coherent", PacketWidth::Sixteen, true, None),
+    ("16", PacketWidth::Sixteen, false, None),
+    ("16 coherent sorted", PacketWidth::Sixteen, true, Some(Sorted::All)),
+    ("16 sorted", PacketWidth::Sixteen, false, Some(Sorted::All)),
+    ("16 coherent sorted where apart", PacketWidth::Sixteen, true, Some(Sorted::Apart)),
+    ("16 sorted where apart", PacketWidth::Sixteen, false, Some(Sorted::Apart)),
+];
+
+/// What was made, and the least nanoseconds of all threads that making it took.
+pub fn least<T>(mut make: impl FnMut() -> T) -> (T, u64) {
+    let (mut made, mut best, mut all) = (None, u64::MAX, 0);
+    for _ in 0..PREPARATIONS {
+        drop(made.take());
+        let start = process_time();
+        made = Some(make());
+        let nanoseconds = process_time() - start;
+        best = best.min(nanoseconds);
+        all += nanoseconds;
+        if all > PATIENCE {
+            break;
+        }
+    }
+    (made.expect("it was made at least once"), best)
+}
+
+/// A structure of Embree's, and how it is asked.
+pub struct Built {
+    ways: Vec<(String, Embree, Option<Sorted>)>,
+    nanoseconds: u64,
+}
+
+/// Embree, as it is built and asked wherever this CPU can; the first is asked single rays.
+pub fn embrees(scene: &Scene) -> Vec<Built> {
+    let build = |(mode, robust, quality)| {
+        let options = EmbreeOptions { quality, ..EmbreeOptions::default() };
+        let (made, nanoseconds) = least(|| Embree::new(scene.triangles.clone(), robust, options));
+        let made = made.ok()?;
+        let ways = WAYS.iter().filter_map(|&(way, width, coherent, sorted)| {
+            if robust && sorted.is_some() {
+                return None;
+            }
+            // 16-wide kernels need AVX-512.
+            let asked = made.with_packets(width, coherent).ok()?;
+            Some((format!("{mode} {way}"), asked, sorted))
+        });
+        Some(Built { ways: ways.collect(), nanoseconds })
+    };
+    BUILDS.into_iter().filter_map(build).collect()
+}
+
+impl Built {
+    /// Asked single rays.
+    pub fn single(&self) -> &Embree {
+        &self.ways[0].1
+    }
+
+    /// One for each way.
+    pub fn racers<'a>(&'a self) -> Vec<Racer<'a>> {
+        let racer = |(name, embree, sorted): &'a (String, Embree, Option<Sorted>)| {
+            let kind = match *sorted {
+                None => Kind::Embree(embree),
+                Some(sorted) => Kind::Sorted(embree, sorted, ByPlace::default()),
+            };
+            Racer::new(name.clone(), kind, self.nanoseconds)
+        };
+        self.ways.iter().map(racer).collect()
+    }
+}
+
+/// One of ours, made ready.
+pub struct Ready<'a> {
+    name: &'static str,
+    prepared: Box<dyn Prepared + 'a>,
+    nanoseconds: u64,
+}
+
+/// All of ours, over the grid.
+pub fn ours<'a>(
+    scene: &'a Scene,
+    grid: &'a dyn Occlusion,
+    settings: &Settings,
+    every: usize,
+) -> Vec<Ready<'a>> {
+    const FITS: &str = "it goes with the grid";
+    let make = |name: &str| -> Box<dyn Prepared + 'a> {
+        if name == "auto" {
+            let auto = Auto::new(Method::Trace, Test::Exact, scene, grid).expect(FITS);
+            return Box::new(auto.expecting(forecast(scene, grid, settings) / every as u64));
+        }
+        let combination: Combination = name.parse().expect("a method");
+        prepare(combination, scene, grid).expect(FITS)
+    };
+    let ready = |name| {
+        let (prepared, nanoseconds) = least(|| make(name));
+        Ready { name, prepared, nanoseconds }
+    };
+    OURS.into_iter().map(ready).collect()
+}
+
+impl Ready<'_> {
+    pub fn racer(&self) -> Racer<'_> {
+        let kind = Kind::Ours(&*self.prepared, self.prepared.worker());
+        Racer::new(self.name.to_owned(), kind, self.nanoseconds)
+    }
+}
+
+/// Somebody who answers, and what that took so far.
+pub struct Racer<'a> {
+    name: String,
+    kind: Kind<'a>,
+    /// Nanoseconds of preparation, and in each part.
+    prepared: u64,
+    parts: Vec<u64>,
+    blocked: usize,
+}
+
+enum Kind<'a> {
+    Embree(&'a Embree),
+    Sorted(&'a Embree, Sorted, ByPlace),
+    Ours(&'a dyn Prepared, Box<dyn Shadows + 'a>),
+}
+
+impl<'a> Racer<'a> {
+    fn new(name: String, kind: Kind<'a>, prepared: u64) -> Self {
+        Self { name, kind, prepared, parts: Vec::new(), blocked: 0 }
+    }
+
+    /// Answers a part.
+    pub fn run(&mut self, runs: &[Run]) {
+        let start = process_time();
+        let blocked = match &mut self.kind {
+            Kind::Embree(embree) => blocked_by_engine(*embree, runs),
+            Kind::Sorted(embree, sorted, by_place) => by_place.blocked(*embree, *sorted, runs),
+            Kind::Ours(_, worker) => blocked_by_worker(&mut **worker, runs),
+        };
+        self.parts.push(process_time() - start);
+        self.blocked += blocked;
+    }
+
+    /// What it took.
+    pub fn figures(self) -> Figures {
+        let bytes = match &self.kind {
+            Kind::Embree(embree) | Kind::Sorted(embree, ..) => embree.memory(),
+            Kind::Ours(prepared, _) => prepared.memory(),
+        };
+        let sorted = matches!(self.kind, Kind::Sorted(..));
+        Figures {
+            embree: !matches!(self.kind, Kind::Ours(..)),
+            sorted,
+            name: self.name,
+            prepared: self.prepared,
+            parts: self.parts,
+            blocked: self.blocked,
+            bytes,
+        }
+    }
+}

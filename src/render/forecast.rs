@@ -1,0 +1,85 @@
+//! How many shadow queries a picture will ask, before it is rendered: those of a small picture of the same view, times how
+//! much smaller it is. Nobody answers those; they count as blocked, and so cost no shading.
+
+use super::{Progress, Settings, whitted::Unit};
+use crate::occlusion::Occlusion;
+use crate::scene::Scene;
+use crate::shadow::{Answer, Prepared, ShadowQuery, ShadowTally, Shadows};
+
+/// Pixels of the picture to one of the small one, along each side: a thousandth of all pixels is looked at.
+const STRIDE: u32 = 32;
+
+/// About how many shadow queries a render will ask.
+#[must_use]
+pub fn forecast(scene: &Scene, backend: &dyn Occlusion, settings: &Settings) -> u64 {
+    let Settings { width, height, samples, .. } = *settings;
+    let small = Settings {
+        width: width.div_ceil(STRIDE),
+        height: height.div_ceil(STRIDE),
+        samples: 1,
+        mask: false,
+        answers: None,
+        record: false,
+        ..*settings
+    };
+    let asked: u64 = small
+        .units()
+        .iter()
+        .map(|pixels| {
+            let unit = Unit::new(scene, backend, &Unanswered, &small);
+            unit.run(pixels, &Progress::default()).statistics.rays.shadow
+        })
+        .sum();
+    let times = f64::from(width) * f64::from(height) * f64::from(samples).powi(2)
+        / (f64::from(small.width) * f64::from(small.height));
+    (asked as f64 * times) as u64
+}
+
+/// Says that everything is blocked.
+struct Unanswered;
+
+impl Prepared for Unanswered {
+    fn worker(&self) -> Box<dyn Shadows + '_> {
+        Box::new(Self)
+    }
+}
+
+impl Shadows for Unanswered {
+    fn answer(&mut self, _: usize, _: &[ShadowQuery], answers: &mut [Answer]) {
+        for answer in answers {
+            answer.blocked = true;
+        }
+    }
+
+    fn tally(&self) -> ShadowTally {
+        ShadowTally::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::occlusion::{Backend, BuildOptions, Test, build};
+    use crate::render::render;
+    use crate::scene::builtin;
+    use crate::shadow::Trace;
+
+    #[test]
+    fn a_forecast_is_right_by_a_fifth() {
+        for name in builtin::NAMES {
+            let scene = builtin::draft_at(name, 0.1).unwrap().finish().unwrap();
+            let options = BuildOptions::default();
+            let grid = build(Backend::Grid, Test::Exact, &scene.triangles, &options).unwrap();
+            let settings = Settings { samples: 2, depth: 3, ..Settings::default() };
+            let expected = forecast(&scene, &*grid, &settings) as f64;
+            let small = Settings { width: 160, height: 120, samples: 1, ..settings };
+            let rendered =
+                render(&scene, &*grid, &Trace::new(&*grid), &small, &Progress::default()).unwrap();
+            let pixels = |settings: &Settings| {
+                f64::from(settings.width * settings.height * settings.samples.pow(2))
+            };
+            let all = rendered.statistics.rays.shadow as f64 * pixels(&settings) / pixels(&small);
+            assert!((0.8..1.25).contains(&(expected / all)), "{name}: {expected} of {all}");
+        }
+    }
+}
