@@ -127,3 +127,26 @@ fn opaque_triangles_come_first_in_every_voxel() {
     engine.transparent(&ray, &mut found, &mut Tally::default());
     assert!(found.iter().all(|id| *id >= 1000));
 }
+
+#[test]
+fn many_rays_are_answered_and_counted_as_one_by_one() {
+    let mesh = soup(3000, 0.05, 12);
+    let triangles = over(&mesh);
+    let grid = engine(Backend::Grid, &triangles);
+    let mut random = Random(13);
+    let broken = Ray::between(Vec3::splat(f32::NAN), Vec3::ZERO);
+    let mut rays = vec![broken, Ray { end: 0.0, ..Ray::between(Vec3::ZERO, Vec3::ONE) }];
+    for distance in [0.5f32, 1.5, 1e4, 1e30] {
+        for _ in 0..100 {
+            rays.push(Ray::between(distance * random.in_cube(1.0), random.in_cube(1.0)));
+        }
+    }
+    for rays in [&rays[..0], &rays[..1], &rays[1..3], &rays[..33], &rays] {
+        let (mut together, mut apart) = (Tally::default(), Tally::default());
+        let mut blocked = vec![false; rays.len()];
+        grid.occluded_many(rays, &mut blocked, &mut together);
+        let expected: Vec<bool> = rays.iter().map(|ray| grid.occluded(ray, &mut apart)).collect();
+        assert_eq!(blocked, expected);
+        assert_eq!(together, apart);
+    }
+}

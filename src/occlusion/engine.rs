@@ -4,6 +4,7 @@ use std::marker::PhantomData;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use super::any::{AnyOccluders, OccluderIn};
 use super::nearest::NearestHit;
 use super::sparing::SparingOccluder;
 use super::walk::walk_any;
@@ -68,11 +69,25 @@ impl<W: Walk, T: TriangleTest, J: Job<W, T>> LanesJob for WithEngine<'_, J, W, T
 
 impl<W: Walk, T: TriangleTest> Occlusion for Engine<W, T> {
     fn occluder(&self, ray: &Ray, tally: &mut Tally) -> Option<Occluder> {
-        self.run(AnyOccluder { ray, within: None, tally })
+        let mut found = [None];
+        self.run(AnyOccluders { rays: std::slice::from_ref(ray), found: &mut found, tally });
+        found[0]
+    }
+
+    fn occluded_many(&self, rays: &[Ray], blocked: &mut [bool], tally: &mut Tally) {
+        /// Rays of one job: what is found of them stays in the nearest cache.
+        const AT_ONCE: usize = 64;
+        assert_eq!(rays.len(), blocked.len(), "one answer a ray");
+        for (rays, blocked) in rays.chunks(AT_ONCE).zip(blocked.chunks_mut(AT_ONCE)) {
+            let mut found = [None; AT_ONCE];
+            let found = &mut found[..rays.len()];
+            self.run(AnyOccluders { rays, found, tally });
+            blocked.iter_mut().zip(found).for_each(|(blocked, found)| *blocked = found.is_some());
+        }
     }
 
     fn occluder_in(&self, cell: Cell, ray: &Ray, tally: &mut Tally) -> Option<Occluder> {
-        self.run(AnyOccluder { ray, within: Some(cell), tally })
+        self.run(OccluderIn { cell, ray, tally })
     }
 
     fn occluder_except(
@@ -128,14 +143,15 @@ pub(super) fn test_each<T: TriangleTest, L: Lanes>(
     L::run(TestEach::<T, L, _, _> { triangles, ray, lanes, ids, wanted, hit, test: PhantomData })
 }
 
-struct TestEach<'a, T, L, Wanted, Hit> {
-    triangles: &'a Triangles,
-    ray: &'a Ray,
-    lanes: &'a RayLanes<L>,
-    ids: &'a [TriangleId],
-    wanted: Wanted,
-    hit: Hit,
-    test: PhantomData<T>,
+/// The same as a job; inside of a kernel it may be [run](Kernel::run) in place.
+pub(super) struct TestEach<'a, T, L, Wanted, Hit> {
+    pub triangles: &'a Triangles,
+    pub ray: &'a Ray,
+    pub lanes: &'a RayLanes<L>,
+    pub ids: &'a [TriangleId],
+    pub wanted: Wanted,
+    pub hit: Hit,
+    pub test: PhantomData<T>,
 }
 
 impl<T, L, Wanted, Hit> Kernel for TestEach<'_, T, L, Wanted, Hit>
@@ -176,78 +192,6 @@ pub(super) fn admit(ray: &Ray, tally: &mut Tally) -> bool {
     let valid = ray.is_valid();
     tally.invalid_rays += u64::from(!valid);
     valid
-}
-
-struct AnyOccluder<'a> {
-    ray: &'a Ray,
-    within: Option<Cell>,
-    tally: &'a mut Tally,
-}
-
-impl<W: Walk, T: TriangleTest> Job<W, T> for AnyOccluder<'_> {
-    type Answer = Option<Occluder>;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, engine: &Engine<W, T>) -> Option<Occluder> {
-        let Self { ray, within, tally } = self;
-        if !admit(ray, tally) {
-            return None;
-        }
-        let lanes = RayLanes::<L>::of::<T>(ray);
-        let triangles = &engine.triangles;
-        let mut visitor =
-            AnyVisitor::<T, L> { triangles, ray, lanes, tally, found: None, test: PhantomData };
-        match within {
-            None => {
-                visitor.tally.traversals += 1;
-                if W::INLINED && L::COUNT > 4 {
-                    engine.walk.walk::<L, _>(ray, &mut visitor);
-                } else {
-                    walk_any::<W, L>(&engine.walk, ray, &mut visitor);
-                }
-            }
-            Some(cell) => {
-                let run = &engine.walk.order()[cell.start as usize..cell.end as usize];
-                let _ = visitor.visit(cell, run);
-            }
-        }
-        visitor.found
-    }
-}
-
-struct AnyVisitor<'a, T, L> {
-    triangles: &'a Triangles,
-    ray: &'a Ray,
-    lanes: RayLanes<L>,
-    tally: &'a mut Tally,
-    found: Option<Occluder>,
-    test: PhantomData<T>,
-}
-
-impl<T: TriangleTest, L: Lanes> Visit for AnyVisitor<'_, T, L> {
-    #[inline(always)]
-    fn visit(&mut self, cell: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
-        let Self { triangles, ray, lanes, tally, found, .. } = self;
-        tally.cells += 1;
-        let opaque = triangles.opaque_count();
-        test_each::<T, L>(
-            triangles,
-            ray,
-            lanes,
-            ids,
-            tally,
-            |id| id < opaque,
-            |triangle| {
-                *found = Some(Occluder { triangle, cell });
-                ControlFlow::Break(())
-            },
-        )
-    }
-
-    #[inline(always)]
-    fn end(&self) -> f32 {
-        self.ray.end
-    }
 }
 
 struct One<'a> {

@@ -6,6 +6,7 @@
 //! is conservative, its answers are those of brute force, whatever the test; so `grid`, `bvh2`,
 //! `cwbvh` and `brute` agree bit for bit by construction.
 
+mod any;
 mod brute;
 mod bvh2;
 mod clip;
@@ -41,7 +42,7 @@ pub use kind::{Backend, BackendError, BuildOptions, Test, build};
 pub use left_out::LeftOut;
 pub use nearest::Nearest;
 pub use tally::Tally;
-pub use walk::{Visit, Walk};
+pub use walk::{Visit, VisitMany, Walk};
 
 use crate::geometry::{Ray, TriangleId};
 

@@ -97,4 +97,9 @@ impl<T: TriangleTest, L: Lanes> Visit for NearestVisitor<'_, T, L> {
     fn end(&self) -> f32 {
         self.best.map_or(self.ray.end, |best| (best.t as f32).next_up())
     }
+
+    #[inline(always)]
+    fn is_ordered(&self) -> bool {
+        true
+    }
 }

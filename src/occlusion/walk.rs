@@ -15,6 +15,26 @@ pub trait Visit {
 
     /// Nothing beyond this `t` is of interest any more.
     fn end(&self) -> f32;
+
+    /// Whether what is nearer had better come first, because [`end`](Self::end) falls; else any order is as good.
+    #[inline(always)]
+    fn is_ordered(&self) -> bool {
+        false
+    }
+}
+
+/// Takes the triangles that a culler could not rule out, for many rays.
+pub trait VisitMany {
+    /// What takes those of one ray.
+    type One<'a>: Visit
+    where
+        Self: 'a;
+
+    /// Counts a query; whether the ray can be answered at all.
+    fn admits(&mut self, ray: usize) -> bool;
+
+    /// For one ray, by its number.
+    fn one(&mut self, ray: usize) -> Self::One<'_>;
 }
 
 /// A structure over triangles that only culls.
@@ -29,6 +49,16 @@ pub trait Walk: Send + Sync + 'static {
 
     /// Visits what the ray might meet, nearer parts mostly first; lanes of whatever kind serve the culling.
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V);
+
+    /// The same for many rays.
+    #[inline(always)]
+    fn walk_many<L: Lanes, V: VisitMany>(&self, rays: &[Ray], visitors: &mut V) {
+        for (number, ray) in rays.iter().enumerate() {
+            if visitors.admits(number) {
+                self.walk::<L, _>(ray, &mut visitors.one(number));
+            }
+        }
+    }
 
     /// The triangles in an order that keeps each cell together.
     fn order(&self) -> &[TriangleId];

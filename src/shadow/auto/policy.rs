@@ -14,14 +14,15 @@
 //!    Told how many queries will come, it builds for the scene as soon as 0.62 of what those still to come would cost without
 //!    is the price, and else not before more have come than were said to. That share is the golden one: building in vain
 //!    and failing to build then cost the same, 1.62 times the best. While few batches have been seen, it must be clearer: by
-//!    three times after the first two, of which the caches knew nothing yet.
+//!    nine times after the first two, of which the caches knew nothing yet; they also come from one corner of the picture. What has cost the price by
+//!    now is doubted no longer.
 //!
 //!    What was bought is asked next, a whole call: so it is known at once what it is worth.
 //!
 //! **Bound.** With costs that stay the same, the time of all queries is at most (2 + 1/√b) times that of the best single
 //! candidate in hindsight, building included, and (1 + 1/√b) times where nothing has to be built; and besides,
 //! one batch of each candidate. Rule 3 gives the 2: when a structure is bought for B, B was lost by not having it, and
-//! the best in hindsight has paid B or that; on a true word it is 1.62, once some batches have been seen. Rule 2 gives
+//! the best in hindsight has paid B or that; on a true word it is 1.62 + 8/√b. Rule 2 gives
 //! the rest. Costs that change are followed, as the estimates
 //! fade (`estimate`), without a bound.
 //!
@@ -38,7 +39,7 @@ const BATCH: f64 = 256.0;
 const WORTH: f64 = 0.618;
 
 /// Batches after which half of what they say of those to come is believed.
-const DOUBT: f64 = 4.0;
+const DOUBT: f64 = 16.0;
 
 /// A batch counts for at most so many times what was expected: what takes longer was interrupted, by another
 /// program or by the system.
@@ -163,20 +164,23 @@ impl Policy {
     /// The candidate that is worth preparing by now, if there is one.
     pub fn worth_preparing(&self) -> Option<usize> {
         let paid: f64 = self.prepared.iter().flatten().sum();
-        let worth = if self.queries < self.expected {
-            let believed = self.batches / (self.batches + DOUBT);
-            let to_come = self.expected - self.queries;
-            WORTH * believed * self.spent / self.queries.max(1.0) * to_come
-        } else {
-            self.spent
-        };
         let waiting = (0..self.prices.len()).filter(|&c| self.prepared[c].is_none());
         waiting.min_by(|&a, &b| self.prices[a].scene.total_cmp(&self.prices[b].scene)).filter(
             |&c| {
                 let price = self.prices[c].scene;
-                self.batches > 0.0 && (price == 0.0 || worth >= paid + price)
+                self.batches > 0.0 && (price == 0.0 || self.worth(price) >= paid + price)
             },
         )
+    }
+
+    /// What may be paid by now for something of this price.
+    fn worth(&self, price: f64) -> f64 {
+        if self.queries >= self.expected {
+            return self.spent;
+        }
+        let believed = (self.batches / (self.batches + DOUBT)).max((self.spent / price).min(1.0));
+        let to_come = self.expected - self.queries;
+        WORTH * believed * self.spent / self.queries.max(1.0) * to_come
     }
 
     /// A candidate has been prepared; those that share what it needed will cost less.

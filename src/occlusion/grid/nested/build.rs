@@ -5,29 +5,39 @@
 //! with the ratio of their surfaces (MacDonald & Booth 1990).
 //!
 //! Dividing lists a triangle again in each voxel that it comes near. So that long thin ones do not fill the memory, there
-//! is a limit to how many times more entries all divisions down to a voxel may make.
+//! is a limit to how many times more entries all divisions down to a voxel may make. Eights of triangles with a box each cost no
+//! entries: that is what lists are made of wherever there is room, and what is done with the long ones that are not divided, the
+//! fans above all.
 //!
 //! MacDonald, Booth: Heuristics for Ray Tracing Using Space Subdivision. The Visual Computer 6(3), 1990.
+
+use std::slice::Chunks;
 
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
+use super::group::{GROUP, Group};
 use super::sort::{Extent, Lattice};
 use super::walk::MOST_DEPTH;
-use super::{Cube, NestedGrid, Node};
+use super::{Cube, NestedGrid, Node, SLOTS};
 use crate::geometry::{TriangleId, Triangles, is_finite};
+use crate::occlusion::Cell;
 
-/// A voxel with at most so many triangles, two vectors full, is never divided.
-const FEW: usize = 16;
+/// A voxel with at most so many triangles, five vectors full, is never divided.
+const FEW: usize = 40;
 
 /// Triangles of one vector test.
 const AT_ONCE: usize = 8;
 
+/// Triangles to a voxel of a grid, and voxels at most: half of what there are bits for, so that there is room for eights.
+const PER_VOXEL: usize = 4;
+const MOST_VOXELS: usize = SLOTS / 2;
+
 /// What a grid costs, in vector tests.
-const GRID_COST: f32 = 1.2;
+const GRID_COST: f32 = 1.5;
 
 /// How many times as many entries may be made as there are triangles, on the way down to a voxel.
-const MOST_GROWTH: f32 = 16.0;
+const MOST_GROWTH: f32 = 10.0;
 
 /// A voxel whose longest side is fewer paddings than this is not divided.
 const FEWEST_PADDINGS: f32 = 8.0;
@@ -38,13 +48,13 @@ const WORTH_A_THREAD: usize = 4096;
 /// Sorts all triangles.
 pub(super) fn build(triangles: &Triangles) -> NestedGrid {
     let cube = Cube::over(triangles);
-    let everything = Extent { low: Vec3A::splat(-1.0), high: Vec3A::splat(2.0) };
     let all: Vec<TriangleId> = (0..triangles.len() as TriangleId).collect();
     let sorter = Sorter::new(triangles, cube, &all);
     let list: Vec<u32> = (0..sorter.ids.len() as u32).collect();
     // Places of entries have 32 bits.
     let growth = MOST_GROWTH.min((u32::MAX / list.len().max(1) as u32) as f32);
-    let root = sorter.grid(everything, &list, Depth { level: 0, growth });
+    let root =
+        sorter.bounds().and_then(|bounds| sorter.grid(bounds, &list, Depth { level: 0, growth }));
     sorter.finish(root)
 }
 
@@ -60,7 +70,8 @@ pub(super) fn divide(
     let extent = Extent { low: place(low) - cube.padding, high: place(high) + cube.padding };
     let sorter = Sorter::new(triangles, cube, list);
     let list: Vec<u32> = (0..sorter.ids.len() as u32).collect();
-    let root = sorter.grid(extent, &list, Depth { level: 1, growth: MOST_GROWTH })?;
+    let bounds = sorter.bounds()?.within(extent, cube.padding);
+    let root = sorter.grid(bounds, &list, Depth { level: 1, growth: MOST_GROWTH })?;
     Some(sorter.finish(Some(root)))
 }
 
@@ -74,18 +85,38 @@ struct Depth {
 /// A grid in the making.
 struct Grid {
     node: Node,
-    /// The lists of its voxels that are not divided, one after another, and where each ends.
-    lists: Vec<u32>,
-    ends: Vec<u32>,
-    /// The grids in those that are.
+    /// What its voxels hold.
+    slots: Vec<Slot>,
+    /// The grids in those that are divided.
     inside: Vec<Grid>,
+    /// The lists of the others, one after another.
+    lists: Vec<u32>,
+}
+
+/// Something that a voxel holds: a grid, a list or a part of it.
+struct Slot {
+    voxel: u32,
+    /// Where its list ends. That of a grid is empty.
+    end: u32,
+    bounds: Extent,
 }
 
 /// The triangles of a list, by voxel.
 struct Sorted {
     list: Vec<u32>,
-    /// The voxels that hold any, and where the part of each ends.
-    voxels: Vec<(u32, usize)>,
+    /// The voxels that hold any.
+    parts: Vec<Part>,
+}
+
+/// A voxel that holds something.
+#[derive(Clone, Copy)]
+struct Part {
+    voxel: u32,
+    /// Of the sorted list.
+    start: u32,
+    end: u32,
+    /// The box of its triangles, where they are in it.
+    bounds: Extent,
 }
 
 struct Sorter {
@@ -105,28 +136,28 @@ impl Sorter {
         Self { cube, ids, corners }
     }
 
-    /// The grid of what a voxel holds; `None` if it gains too little.
-    fn grid(&self, voxel: Extent, list: &[u32], depth: Depth) -> Option<Grid> {
+    /// The box of all, with padding; none without any.
+    fn bounds(&self) -> Option<Extent> {
+        let boxes = self.corners.iter().map(Extent::of);
+        boxes.reduce(Extent::union).map(|tight| tight.within(Extent::ALL, self.cube.padding))
+    }
+
+    /// The grid of a list of triangles that are in a box; `None` if it gains too little.
+    fn grid(&self, bounds: Extent, list: &[u32], depth: Depth) -> Option<Grid> {
         let padding = self.cube.padding;
-        let boxes = list.iter().map(|&index| Extent::of(&self.corners[index as usize]));
-        let tight = boxes.reduce(Extent::union)?;
-        let bounds = Extent {
-            low: tight.low.max(voxel.low) - padding,
-            high: tight.high.min(voxel.high) + padding,
-        };
-        let mut lattice = Lattice::over(bounds, list.len(), padding);
-        let Sorted { list: mut sorted, mut voxels } = self.sort(&lattice, list);
+        let mut lattice = Lattice::over(bounds, MOST_VOXELS.min(list.len() / PER_VOXEL), padding);
+        let Sorted { list: mut sorted, mut parts } = self.sort(&lattice, list);
         let mut growth = sorted.len() as f32 / list.len() as f32;
         if depth.level == 0 {
             // There must be an outermost grid, if only of one voxel.
             if growth > depth.growth {
                 lattice = Lattice::over(bounds, 1, padding);
-                (sorted, voxels, growth) = (list.to_vec(), vec![(0, list.len())], 1.0);
+                sorted = list.to_vec();
+                parts = vec![Part { voxel: 0, start: 0, end: list.len() as u32, bounds }];
+                growth = 1.0;
             }
         } else {
-            let ends = voxels.iter().map(|&(_, end)| end);
-            let starts = std::iter::once(0).chain(ends.clone());
-            let left: f32 = starts.zip(ends).map(|(start, end)| tests(end - start)).sum();
+            let left: f32 = parts.iter().map(|part| tests(part.len())).sum();
             let pays = lattice.share() * left + GRID_COST < tests(list.len());
             let too_small = lattice.side.max_element() < FEWEST_PADDINGS * padding;
             if !pays || too_small || growth > depth.growth {
@@ -134,29 +165,60 @@ impl Sorter {
             }
         }
         let depth = Depth { level: depth.level + 1, growth: depth.growth / growth };
-        let parts: Vec<(u32, &[u32])> = voxels
-            .iter()
-            .scan(0, |start, &(voxel, end)| {
-                let part = (voxel, &sorted[*start..end]);
-                *start = end;
-                Some(part)
+        let divide = |part: &Part| {
+            let (list, bounds) = (part.of(&sorted), part.bounds);
+            let crowded = list.len() > FEW && depth.level < MOST_DEPTH;
+            crowded.then(|| {
+                self.grid(bounds, list, depth).unwrap_or_else(|| self.bundle(bounds, list))
             })
-            .collect();
-        let divide = |&(voxel, part): &(u32, &[u32])| {
-            let crowded = part.len() > FEW && depth.level < MOST_DEPTH;
-            crowded.then(|| self.grid(lattice.extent(voxel), part, depth)).flatten()
         };
         let divided: Vec<Option<Grid>> = if list.len() > WORTH_A_THREAD {
             parts.par_iter().map(divide).collect()
         } else {
             parts.iter().map(divide).collect()
         };
-        let node = Node { min: lattice.min, side: lattice.side, ..Node::default() };
-        let mut grid = Grid { node, lists: Vec::new(), ends: Vec::new(), inside: Vec::new() };
-        for ((voxel, part), inside) in parts.into_iter().zip(divided) {
-            grid.add(voxel, part, inside);
+        let mut grid = Grid::over(&lattice);
+        let undivided = parts.iter().zip(&divided).filter(|(_, inside)| inside.is_none());
+        grid.lists.reserve_exact(undivided.map(|(part, _)| part.len()).sum());
+        grid.slots.reserve_exact(SLOTS);
+        // Eights are worth a box each as long as there are bits for them.
+        let mut room = SLOTS - parts.len();
+        for (part, inside) in parts.iter().zip(divided) {
+            if let Some(inside) = inside {
+                grid.add_grid(part.voxel, part.bounds, inside);
+                continue;
+            }
+            let list = part.of(&sorted);
+            let more = list.len().div_ceil(AT_ONCE) - 1;
+            if more > 0 && more <= room {
+                room -= more;
+                self.add_parts(&mut grid, &lattice, part.voxel, list.chunks(AT_ONCE));
+            } else if more > 1 {
+                grid.add_grid(part.voxel, part.bounds, self.bundle(part.bounds, list));
+            } else {
+                grid.add_list(part.voxel, part.bounds, list);
+            }
         }
         Some(grid)
+    }
+
+    /// A long list that is not divided, in eights with a box each: a grid of one voxel.
+    fn bundle(&self, bounds: Extent, list: &[u32]) -> Grid {
+        let lattice = Lattice::over(bounds, 1, self.cube.padding);
+        let mut grid = Grid::over(&lattice);
+        grid.lists.reserve_exact(list.len());
+        let eights = list.len().div_ceil(AT_ONCE).div_ceil(SLOTS);
+        self.add_parts(&mut grid, &lattice, 0, list.chunks(eights * AT_ONCE));
+        grid
+    }
+
+    /// Adds parts of the list of a voxel, each with the box of its triangles where they are in the voxel.
+    fn add_parts(&self, grid: &mut Grid, lattice: &Lattice, voxel: u32, parts: Chunks<u32>) {
+        for part in parts {
+            let boxes = part.iter().map(|&index| Extent::of(&self.corners[index as usize]));
+            let bounds = boxes.fold(Extent::EMPTY, Extent::union);
+            grid.add_list(voxel, lattice.within(voxel, bounds), part);
+        }
     }
 
     /// Sorts a list by voxel; ids stay in ascending order.
@@ -175,15 +237,24 @@ impl Sorter {
             *end = total;
             total += count;
         }
-        let mut sorted = vec![0; total];
+        let mut sorted = vec![0; total as usize];
+        let mut bounds = [Extent::EMPTY; 64];
         for (&index, &voxels) in list.iter().zip(&voxels) {
+            let extent = Extent::of(&self.corners[index as usize]);
             for voxel in ones(voxels) {
-                sorted[ends[voxel]] = index;
+                sorted[ends[voxel] as usize] = index;
                 ends[voxel] += 1;
+                bounds[voxel] = bounds[voxel].union(extent);
             }
         }
+        let part = |voxel: usize| Part {
+            voxel: voxel as u32,
+            start: ends[voxel] - counts[voxel],
+            end: ends[voxel],
+            bounds: lattice.within(voxel as u32, bounds[voxel]),
+        };
         let occupied = (0..64).filter(|&voxel| counts[voxel] > 0);
-        Sorted { list: sorted, voxels: occupied.map(|voxel| (voxel as u32, ends[voxel])).collect() }
+        Sorted { list: sorted, parts: occupied.map(part).collect() }
     }
 
     /// Puts the grids side by side.
@@ -191,51 +262,71 @@ impl Sorter {
         let mut grid = NestedGrid {
             cube: self.cube,
             nodes: Vec::new(),
-            starts: Vec::new(),
+            groups: Vec::new(),
             order: Vec::new(),
         };
         if let Some(root) = root {
             grid.nodes.push(Node::default());
             self.put(root, 0, &mut grid);
         }
-        grid.starts.push(end_of(&grid.order));
         grid.nodes.shrink_to_fit();
-        grid.starts.shrink_to_fit();
+        grid.groups.shrink_to_fit();
         grid.order.shrink_to_fit();
         grid
     }
 
     fn put(
         &self,
-        Grid { mut node, lists, ends, inside }: Grid,
+        Grid { mut node, slots, inside, lists }: Grid,
         place: usize,
         grid: &mut NestedGrid,
     ) {
-        let first = grid.nodes.len();
-        node.first_node = first as u32;
-        node.first_list = grid.starts.len() as u32;
+        let (first_group, first_grid) = (grid.groups.len(), grid.nodes.len());
+        (node.first_group, node.first_grid) = (first_group as u32, first_grid as u32);
+        node.slots = slots.len() as u32;
         grid.nodes[place] = node;
-        let before = end_of(&grid.order);
-        let starts = std::iter::once(0).chain(ends).take(node.list_count());
-        grid.starts.extend(starts.map(|start| before + start));
+        grid.groups.resize(node.groups().end, Group::EMPTY);
+        let first = end_of(&grid.order);
         grid.order.extend(lists.into_iter().map(|index| self.ids[index as usize]));
-        grid.nodes.resize(first + inside.len(), Node::default());
+        let mut start = first;
+        for (number, Slot { voxel, end, bounds }) in slots.into_iter().enumerate() {
+            let cell = Cell { start, end: first + end };
+            let group = &mut grid.groups[first_group + number / GROUP];
+            group.set(number % GROUP, voxel, bounds, cell);
+            start = cell.end;
+        }
+        grid.nodes.resize(first_grid + inside.len(), Node::default());
         for (number, inside) in inside.into_iter().enumerate() {
-            self.put(inside, first + number, grid);
+            self.put(inside, first_grid + number, grid);
         }
     }
 }
 
 impl Grid {
-    fn add(&mut self, voxel: u32, list: &[u32], inside: Option<Grid>) {
-        self.node.occupied |= 1 << voxel;
-        if let Some(inside) = inside {
-            self.node.divided |= 1 << voxel;
-            self.inside.push(inside);
-        } else {
-            self.lists.extend_from_slice(list);
-            self.ends.push(self.lists.len() as u32);
-        }
+    fn over(lattice: &Lattice) -> Self {
+        let node = Node { min: lattice.min, side: lattice.side, ..Node::default() };
+        Self { node, slots: Vec::new(), inside: Vec::new(), lists: Vec::new() }
+    }
+
+    fn add_list(&mut self, voxel: u32, bounds: Extent, list: &[u32]) {
+        self.lists.extend_from_slice(list);
+        self.slots.push(Slot { voxel, end: self.lists.len() as u32, bounds });
+    }
+
+    fn add_grid(&mut self, voxel: u32, bounds: Extent, inside: Grid) {
+        self.node.divided |= 1 << self.slots.len();
+        self.inside.push(inside);
+        self.add_list(voxel, bounds, &[]);
+    }
+}
+
+impl Part {
+    fn len(&self) -> usize {
+        (self.end - self.start) as usize
+    }
+
+    fn of<'a>(&self, sorted: &'a [u32]) -> &'a [u32] {
+        &sorted[self.start as usize..self.end as usize]
     }
 }
 

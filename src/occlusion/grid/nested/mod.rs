@@ -1,51 +1,55 @@
 //! Grids within grids: every crowded voxel holds a grid of its own, of at most 4×4×4 voxels, fitted to what it
 //! holds.
 //!
-//! A recursive grid (Jevans & Wyvill 1989) with small grids, so that one is a record of a cache line: its box, and a bit a
-//! voxel that says whether anything is in it. Where the ray goes is not stepped through: all 64 voxels are
-//! tested at once, as slabs in vectors (`walk`), and the bits of those that are met and hold anything are taken in the ray's
-//! order. So empty space costs nothing, and a grid about as much as a node of a wide BVH; yet voxels are disjoint,
-//! as the paper's caches want them.
+//! A recursive grid (Jevans & Wyvill 1989) with small grids. Where the ray goes is not stepped through: what
+//! the voxels hold, lists and grids, has boxes, fitted to what of it is in the voxel, and they are tested sixteen at once (`group`).
+//! So empty space costs nothing, and a grid about as much as a node of a wide BVH; yet voxels are disjoint,
+//! as the paper's caches want them. Where a list is long, its eights of triangles have a box each.
 //!
 //! Wins over a uniform grid wherever detail is uneven, which is everywhere: 3 to 10 times, and it is smaller. Loses to
-//! a BVH where long thin triangles fan out, which no grid separates.
+//! Embree's BVH, which lists each triangle once and so can afford to store eights side by side.
 //!
-//! **Exact,** because nothing is lost. All of it lives in the unit cube of the scene, in f32. A point of the ray and
-//! a point of a triangle within the [slack](Triangles::slack) of each other are in the same voxel as far as the walk can
-//! tell, because triangles are listed in all voxels within [`padding`] of them, and the walk misplaces a
-//! point by less. In units of u = 2⁻²⁴ and of the cube's side:
+//! **Exact,** because nothing is lost. All of it lives in the unit cube of the scene, in f32. Triangles are listed in all
+//! voxels within `padding` of them, which is [`MISPLACED`] and what a test may err by ([slack](Triangles::slack)); a box reaches beyond
+//! its triangles by as much, and beyond its voxel by twice that. So where the ray comes within the slack of a triangle, that point of
+//! the ray is in a voxel that lists it and inside of its box by [`MISPLACED`] at least, and the walk misplaces it by less. In units of
+//! u = 2⁻²⁴ and of the cube's side:
 //!
 //! | error of a place | bound |
 //! | --- | --- |
 //! | origin: difference, scale, product, of magnitudes up to 1.5 | 4.5 u |
 //! | direction: scale, product, its inverse | 4.5 u |
-//! | corner of a grid, its distance from the origin, product with the inverse | 4 u |
-//! | side times inverse, a multiple of it added, rounded twice | 5 u |
+//! | plane of a box and origin, each times the inverse, rounded; their difference | 5 u |
 //! | corners of the triangle, in the cube | 1 u |
+//! | planes of a box: padding added twice, corner of the voxel | 4 u |
 //! | which voxels a box spans, when it is sorted in | 4 u |
 //!
-//! Together 23 u < 2⁻¹⁹ = 32 u = [`MISPLACED`]. The same planes bound neighbouring voxels, computed alike, so every point of the ray
-//! is in some voxel; and the box of a grid reaches beyond its voxel by twice the padding, so every point that
-//! its parent takes to be in the voxel is in the box. The test of triangle and voxel in `sort` has an allowance of its own.
+//! Together 23 u < 2⁻¹⁹ = 32 u = [`MISPLACED`]. The test of triangle and voxel in `sort` has an allowance of its own.
 //!
 //! Jevans, Wyvill: Adaptive Voxel Subdivision for Ray Tracing. Graphics Interface 1989.
 
 mod build;
+mod group;
 mod sort;
 mod walk;
 
 use glam::{DVec3, UVec3, Vec3A};
 
+use group::{GROUP, Group};
+
 use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
 use crate::occlusion::clip::{Clip, clip};
-use crate::occlusion::{Cell, Visit, Walk};
+use crate::occlusion::{Cell, Visit, VisitMany, Walk};
 
 /// How far from its place the walk may take a point to be; see the table above.
 const MISPLACED: f32 = 1.0 / (1 << 19) as f32;
 
 /// Voxels along an axis of one grid at most: 64 in all, a bit each.
 const MOST: u32 = 4;
+
+/// Things that the voxels of one grid may hold: a bit each.
+const SLOTS: usize = 64;
 
 /// The unit cube that a scene or a part of it is mapped to.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +96,7 @@ impl Cube {
     }
 }
 
-/// One grid: which of its voxels hold anything, and which of those a grid.
+/// One grid: where it is, and what its voxels hold.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 struct Node {
@@ -100,39 +104,27 @@ struct Node {
     min: Vec3A,
     /// Sides of a voxel. Voxels beyond the grid's resolution are there, outside its box, and empty.
     side: Vec3A,
-    /// The first of the grids in its voxels, which follow each other; likewise the first list.
-    first_node: u32,
-    first_list: u32,
-    /// A bit a voxel: x + 4 y + 16 z.
-    occupied: u64,
+    /// The first of the groups of what its voxels hold, which follow each other; likewise the first of the grids.
+    first_group: u32,
+    first_grid: u32,
+    /// How many things its voxels hold.
+    slots: u32,
+    /// Which of those are grids, a bit each.
     divided: u64,
 }
 
 /// What a voxel holds.
 enum Content {
-    Nothing,
-    List(usize),
+    List(Cell),
     Grid(usize),
 }
 
 impl Node {
+    /// The groups of what its voxels hold.
     #[inline(always)]
-    fn content(&self, voxel: u32) -> Content {
-        let bit = 1u64 << voxel;
-        let before = bit - 1;
-        if self.divided & bit != 0 {
-            Content::Grid((self.first_node + (self.divided & before).count_ones()) as usize)
-        } else if self.occupied & bit != 0 {
-            let lists = self.occupied & !self.divided;
-            Content::List((self.first_list + (lists & before).count_ones()) as usize)
-        } else {
-            Content::Nothing
-        }
-    }
-
-    /// Number of voxels that hold a list.
-    fn list_count(&self) -> usize {
-        (self.occupied & !self.divided).count_ones() as usize
+    fn groups(&self) -> std::ops::Range<usize> {
+        let first = self.first_group as usize;
+        first..first + (self.slots as usize).div_ceil(GROUP)
     }
 
     /// The voxel that holds a point; the nearest one for a point outside.
@@ -148,8 +140,7 @@ pub struct NestedGrid {
     cube: Cube,
     /// The outermost grid first; none if there is nothing in it.
     nodes: Vec<Node>,
-    /// Where in `order` each list starts; one more than there are lists.
-    starts: Vec<u32>,
+    groups: Vec<Group>,
     order: Vec<TriangleId>,
 }
 
@@ -194,18 +185,41 @@ impl NestedGrid {
         let point = self.cube.place(point).as_vec3a();
         let mut node = self.nodes.first();
         while let Some(grid) = node {
-            match grid.content(grid.voxel_of(point)) {
-                Content::Grid(inside) => node = self.nodes.get(inside),
-                Content::List(list) => return self.cell(list),
-                Content::Nothing => break,
+            let voxel = grid.voxel_of(point);
+            let held = |&slot: &usize| self.group_of(grid, slot).voxel(slot % GROUP) == voxel;
+            // The eights of a list follow each other.
+            let mut slots = (0..grid.slots as usize).filter(held);
+            match slots.next().map(|slot| self.content(grid, slot)) {
+                None => break,
+                Some(Content::Grid(inside)) => node = self.nodes.get(inside),
+                Some(Content::List(first)) => {
+                    let last = slots.next_back().map(|slot| self.content(grid, slot));
+                    return match last {
+                        Some(Content::List(last)) => Cell { end: last.end, ..first },
+                        _ => first,
+                    };
+                }
             }
         }
         Cell::default()
     }
 
+    /// The group that something is in.
     #[inline(always)]
-    fn cell(&self, list: usize) -> Cell {
-        Cell { start: self.starts[list], end: self.starts[list + 1] }
+    fn group_of(&self, node: &Node, slot: usize) -> &Group {
+        &self.groups[node.first_group as usize + slot / GROUP]
+    }
+
+    /// What voxels hold, by its number.
+    #[inline(always)]
+    fn content(&self, node: &Node, slot: usize) -> Content {
+        let bit = 1u64 << slot;
+        if node.divided & bit != 0 {
+            let before = (node.divided & (bit - 1)).count_ones();
+            Content::Grid((node.first_grid + before) as usize)
+        } else {
+            Content::List(self.group_of(node, slot).list(slot % GROUP))
+        }
     }
 
     /// The part of a ray that is in the cube.
@@ -220,11 +234,16 @@ impl Walk for NestedGrid {
         walk::walk::<L, V>(self, ray, visitor);
     }
 
+    #[inline(always)]
+    fn walk_many<L: Lanes, V: VisitMany>(&self, rays: &[Ray], visitors: &mut V) {
+        walk::walk_many::<L, V>(self, rays, visitors);
+    }
+
     fn order(&self) -> &[TriangleId] {
         &self.order
     }
 
     fn memory(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.starts) + size_of_val(&*self.order)
+        size_of_val(&*self.nodes) + size_of_val(&*self.groups) + size_of_val(&*self.order)
     }
 }

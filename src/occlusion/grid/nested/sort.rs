@@ -24,13 +24,26 @@ pub(super) struct Extent {
 }
 
 impl Extent {
+    /// No box, and all of the cube.
+    pub const EMPTY: Self = Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
+    pub const ALL: Self = Self { low: Vec3A::NEG_INFINITY, high: Vec3A::INFINITY };
+
     #[inline(always)]
     pub fn of(&[a, b, c]: &[Vec3A; 3]) -> Self {
         Self { low: a.min(b).min(c), high: a.max(b).max(c) }
     }
 
+    #[inline(always)]
     pub fn union(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+}
+
+impl Extent {
+    /// What of it is in another one, with padding all around.
+    #[inline(always)]
+    pub fn within(self, other: Self, padding: f32) -> Self {
+        Self { low: self.low.max(other.low) - padding, high: self.high.min(other.high) + padding }
     }
 }
 
@@ -75,10 +88,15 @@ impl Lattice {
     }
 
     /// The box of a voxel, with its padding.
-    pub fn extent(&self, voxel: u32) -> Extent {
+    fn extent(&self, voxel: u32) -> Extent {
         let place = UVec3::new(voxel % MOST, voxel / MOST % MOST, voxel / (MOST * MOST));
         let low = self.min + self.side * place.as_vec3a();
         Extent { low: low - self.padding, high: low + self.side + self.padding }
+    }
+
+    /// What of a box is in a voxel, with padding.
+    pub fn within(&self, voxel: u32, bounds: Extent) -> Extent {
+        bounds.within(self.extent(voxel), self.padding)
     }
 
     /// A bit for every voxel that the triangle comes within the padding of: x + 4 y + 16 z.

@@ -1,22 +1,21 @@
-//! The walk: which voxels of a grid does the ray meet, all at once; then, voxel by voxel, what is inside.
-//!
-//! Along each axis five planes bound four slabs of voxels, and a voxel is met where the ray is in its three slabs at
-//! one time (Kay & Kajiya 1986). Planes are numbered in the ray's direction, so the voxels' bits, mirrored likewise, are in
-//! an order in which the ray comes to them: the lowest bit is always next.
+//! The walk: what in a grid does the ray meet, all at once; then, one after another, what is inside.
 //!
 //! Rays that start near the scene's cube go as they are. Others, and those so long or short that
 //! f32 might over- or underflow, are first clipped and mapped to it in f64.
 //!
-//! Kay, Kajiya: Ray Tracing Complex Scenes. SIGGRAPH 1986.
+//! **Many rays** pass the outermost grid in turn before any goes on. A ray by itself is a chain, in which the processor waits for
+//! each link or guesses, and begins again if wrong; the first links of many do not depend on each other. Half of the
+//! queries of an open scene end there.
 
-use glam::{BVec3A, DVec3, Vec3A};
+use glam::{DVec3, Vec3A};
 
-use super::{Content, MOST, NestedGrid, Node};
+use super::group::GROUP;
+use super::{Content, NestedGrid, Node};
 use crate::geometry::Ray;
-use crate::geometry::lanes::Lanes;
-use crate::occlusion::Visit;
+use crate::geometry::lanes::{Lanes, Sixteen};
 use crate::occlusion::brute::visit_all;
 use crate::occlusion::clip::Clip;
+use crate::occlusion::{Visit, VisitMany};
 
 /// Grids within grids at most: each has at most half of the side of the one around it along some axis, and voxels are
 /// larger than the padding, 2⁻¹⁹; so there are fewer.
@@ -29,25 +28,15 @@ const SMALLEST_COMPONENT: f32 = 1.0 / (1u64 << 40) as f32;
 /// Largest components of directions, in sides of the cube, with which nothing below over- or underflows.
 const LENGTHS: std::ops::Range<f32> = 1e-18..1e18;
 
-/// Numbers of the near plane of each slab, for the 16 pairs of slabs across x and y; the far one is the next.
-const NEAR_X: [f32; 16] =
-    [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0];
-const FAR_X: [f32; 16] =
-    [1.0, 2.0, 3.0, 4.0, 1.0, 2.0, 3.0, 4.0, 1.0, 2.0, 3.0, 4.0, 1.0, 2.0, 3.0, 4.0];
-const NEAR_Y: [f32; 16] =
-    [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 3.0];
-const FAR_Y: [f32; 16] =
-    [1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 3.0, 4.0, 4.0, 4.0, 4.0];
-
 /// A ray in the cube.
+#[derive(Clone, Copy)]
 struct Line {
-    origin: Vec3A,
     inverse: Vec3A,
-    /// Magnitudes of the inverse.
-    pace: Vec3A,
-    /// The number of the first plane that the ray comes to along each axis: 0, or 4 if it runs down.
-    first: Vec3A,
-    /// What must be flipped of a mirrored voxel's number to get its own.
+    /// A plane at p is passed at p·inverse + shift.
+    shift: Vec3A,
+    /// Along which axes the ray runs down: 1, else 0.
+    down: [usize; 3],
+    /// The same by bits of a voxel's number.
     mirror: u32,
     /// Where along the ray the line starts, and how fast it goes: `t` of the line is (t − start)·rate.
     start: f64,
@@ -55,6 +44,7 @@ struct Line {
 }
 
 /// How a ray comes to the cube.
+#[derive(Clone, Copy)]
 enum Approach {
     Never,
     /// Along a line, and no farther than this `t` of the line.
@@ -70,15 +60,13 @@ impl Line {
         let smallest = Vec3A::splat(SMALLEST_COMPONENT * magnitudes.max_element());
         let direction = Vec3A::select(magnitudes.cmplt(smallest), smallest, direction);
         let inverse = direction.recip();
-        let down: BVec3A = inverse.cmplt(Vec3A::ZERO);
-        let signs = down.bitmask();
+        let signs = inverse.cmplt(Vec3A::ZERO).bitmask() as usize;
         Self {
-            origin,
             inverse,
-            pace: inverse.abs(),
-            first: Vec3A::select(down, Vec3A::splat(MOST as f32), Vec3A::ZERO),
+            shift: -origin * inverse,
+            down: [signs & 1, signs >> 1 & 1, signs >> 2],
             // Each coordinate of a voxel has two bits of its number.
-            mirror: 3 * ((signs & 1) | (signs & 2) << 1 | (signs & 4) << 2),
+            mirror: 3 * ((signs & 1) | (signs & 2) << 1 | (signs & 4) << 2) as u32,
             start,
             rate,
         }
@@ -133,74 +121,134 @@ impl Line {
     }
 }
 
-impl Node {
-    /// The mirrored bits of the voxels that hold anything and that the line meets before `end`.
+/// A line, spread over lanes.
+pub(super) struct LineLanes<S> {
+    inverse: [S; 3],
+    shift: [S; 3],
+    /// Where it starts.
+    pub start: S,
+    /// Along which axes it runs down: 1, else 0.
+    pub down: [usize; 3],
+}
+
+impl<S: Sixteen> LineLanes<S> {
     #[inline(always)]
-    fn met<L: Lanes>(&self, line: &Line, end: f32) -> u64 {
-        let near = (self.side * line.first + self.min - line.origin) * line.inverse;
-        let step = self.side * line.pace;
-        let near = [L::splat(near.x), L::splat(near.y), L::splat(near.z)];
-        let step = [L::splat(step.x), L::splat(step.y), L::splat(step.z)];
-        let planes_z = [
-            near[2],
-            step[2].add(near[2]),
-            step[2].mul_add(L::splat(2.0), near[2]),
-            step[2].mul_add(L::splat(3.0), near[2]),
-            step[2].mul_add(L::splat(4.0), near[2]),
-        ];
-        let (start, end) = (L::splat(0.0), L::splat(end));
-        let mut met = 0;
-        let mut first = 0;
-        while first < 16 {
-            let near_x = step[0].mul_add(L::load_from(&NEAR_X, first), near[0]);
-            let near_y = step[1].mul_add(L::load_from(&NEAR_Y, first), near[1]);
-            let far_x = step[0].mul_add(L::load_from(&FAR_X, first), near[0]);
-            let far_y = step[1].mul_add(L::load_from(&FAR_Y, first), near[1]);
-            let enter = near_x.max(start).max(near_y);
-            let leave = far_x.min(end).min(far_y);
-            let mut z = 0;
-            while z < 4 {
-                let inside = enter.max(planes_z[z]).less_equal(leave.min(planes_z[z + 1]));
-                met |= u64::from(L::bits(inside)) << (16 * z + first);
-                z += 1;
-            }
-            first += L::COUNT;
+    fn new(line: &Line) -> Self {
+        let Line { inverse, shift, down, .. } = *line;
+        Self {
+            inverse: [S::splat(inverse.x), S::splat(inverse.y), S::splat(inverse.z)],
+            shift: [S::splat(shift.x), S::splat(shift.y), S::splat(shift.z)],
+            start: S::splat(0.0),
+            down,
         }
-        met & mirrored(self.occupied, line.mirror)
+    }
+
+    /// Where it passes planes across an axis.
+    #[inline(always)]
+    pub fn at(&self, axis: usize, planes: &[f32; GROUP]) -> S {
+        S::load(planes).mul_add(self.inverse[axis], self.shift[axis])
     }
 }
 
-/// The bits of voxels, of which those axes are mirrored whose bits of a voxel's number are set.
-#[inline(always)]
-fn mirrored(mut bits: u64, mirror: u32) -> u64 {
-    if mirror & 0b11 != 0 {
-        bits = exchanged(exchanged(bits, 0x5555_5555_5555_5555, 1), 0x3333_3333_3333_3333, 2);
+impl NestedGrid {
+    /// Bits of what the voxels of a grid hold: of that whose boxes the line meets before `end`.
+    #[inline(always)]
+    fn met<S: Sixteen>(&self, node: &Node, line: &LineLanes<S>, end: f32) -> u64 {
+        let end = S::splat(end);
+        let (mut met, mut shift) = (0, 0);
+        for group in &self.groups[node.groups()] {
+            met |= u64::from(group.met(line, end)) << shift;
+            shift += GROUP;
+        }
+        met
     }
-    if mirror & 0b1100 != 0 {
-        bits = exchanged(exchanged(bits, 0x0f0f_0f0f_0f0f_0f0f, 4), 0x00ff_00ff_00ff_00ff, 8);
+
+    /// Of what the line meets in a grid, that in the voxel that it comes to first.
+    #[inline(always)]
+    fn first_of(&self, node: &Node, line: &Line, mut met: u64) -> u32 {
+        let (mut first, mut least) = (0, u32::MAX);
+        while met != 0 {
+            let slot = met.trailing_zeros();
+            met &= met - 1;
+            // Mirrored along the axes that the line runs down, voxels are numbered in its order.
+            let group = self.group_of(node, slot as usize);
+            let number = group.voxel(slot as usize % GROUP) ^ line.mirror;
+            if number < least {
+                (first, least) = (slot, number);
+            }
+        }
+        first
     }
-    if mirror & 0b11_0000 != 0 {
-        bits = exchanged(bits, 0x0000_ffff_0000_ffff, 16).rotate_left(32);
-    }
-    bits
 }
 
-/// Exchanges the bits of `low` with those `shift` above them.
-#[inline(always)]
-fn exchanged(bits: u64, low: u64, shift: u32) -> u64 {
-    (bits >> shift & low) | (bits & low) << shift
+/// A ray that has come to the outermost grid.
+#[derive(Clone, Copy)]
+struct Start {
+    approach: Approach,
+    /// What it meets there.
+    met: u64,
+}
+
+impl Start {
+    #[inline(always)]
+    fn new<L: Lanes>(grid: &NestedGrid, ray: &Ray) -> Self {
+        let approach = Line::approach(grid, ray);
+        let met = match (&approach, grid.nodes.first()) {
+            (Approach::Along(line, end), Some(node)) => {
+                grid.met::<L::Sixteen>(node, &LineLanes::new(line), *end)
+            }
+            _ => 0,
+        };
+        Self { approach, met }
+    }
+
+    /// Whether the ray comes to anything.
+    #[inline(always)]
+    fn is_of_interest(&self) -> bool {
+        self.met != 0 || matches!(self.approach, Approach::Anyhow)
+    }
 }
 
 #[inline(always)]
 pub(super) fn walk<L: Lanes, V: Visit + ?Sized>(grid: &NestedGrid, ray: &Ray, visitor: &mut V) {
-    let (line, mut end) = match Line::approach(grid, ray) {
+    go_on::<L, V>(grid, Start::new::<L>(grid, ray), visitor);
+}
+
+#[inline(always)]
+pub(super) fn walk_many<L: Lanes, V: VisitMany>(grid: &NestedGrid, rays: &[Ray], visitors: &mut V) {
+    /// Rays at once: what is known of them stays in the nearest cache.
+    const AT_ONCE: usize = 32;
+    const NOWHERE: Start = Start { approach: Approach::Never, met: 0 };
+    let mut first = 0;
+    for rays in rays.chunks(AT_ONCE) {
+        let mut starts = [NOWHERE; AT_ONCE];
+        for (number, ray) in rays.iter().enumerate() {
+            if visitors.admits(first + number) {
+                starts[number] = Start::new::<L>(grid, ray);
+            }
+        }
+        for (number, &start) in starts[..rays.len()].iter().enumerate() {
+            if start.is_of_interest() {
+                go_on::<L, _>(grid, start, &mut visitors.one(first + number));
+            }
+        }
+        first += AT_ONCE;
+    }
+}
+
+/// From the outermost grid on.
+#[inline(always)]
+fn go_on<L: Lanes, V: Visit + ?Sized>(grid: &NestedGrid, start: Start, visitor: &mut V) {
+    let (line, mut end) = match start.approach {
         Approach::Never => return,
         Approach::Anyhow => return visit_all(&grid.order, 8, visitor),
         Approach::Along(line, end) => (line, end),
     };
     let Some(mut node) = grid.nodes.first() else { return };
-    let mut met = node.met::<L>(&line, end);
-    // Grids around the present one in which voxels are left: their places, and those voxels.
+    let ordered = visitor.is_ordered();
+    let lanes = LineLanes::<L::Sixteen>::new(&line);
+    let mut met = start.met;
+    // Grids around the present one of which something is left: their places, and what.
     let mut around = [[0u64; 2]; MOST_DEPTH];
     let (mut depth, mut place) = (0, 0);
     loop {
@@ -212,9 +260,13 @@ pub(super) fn walk<L: Lanes, V: Visit + ?Sized>(grid: &NestedGrid, ray: &Ray, vi
             [place, met] = around[depth];
             node = &grid.nodes[place as usize];
         }
-        let voxel = met.trailing_zeros() ^ line.mirror;
-        met &= met - 1;
-        match node.content(voxel) {
+        let slot = if ordered && met & (met - 1) != 0 {
+            grid.first_of(node, &line, met)
+        } else {
+            met.trailing_zeros()
+        };
+        met &= !(1 << slot);
+        match grid.content(node, slot as usize) {
             Content::Grid(inside) => {
                 if met != 0 {
                     around[depth] = [place, met];
@@ -222,34 +274,20 @@ pub(super) fn walk<L: Lanes, V: Visit + ?Sized>(grid: &NestedGrid, ray: &Ray, vi
                 }
                 place = inside as u64;
                 node = &grid.nodes[inside];
-                met = node.met::<L>(&line, end);
+                met = grid.met(node, &lanes, end);
             }
-            Content::List(list) => {
-                let cell = grid.cell(list);
+            Content::List(cell) => {
                 let run = &grid.order[cell.start as usize..cell.end as usize];
                 if visitor.visit(cell, run).is_break() {
                     return;
                 }
-                let nearer = line.end(visitor.end());
-                if nearer < end {
-                    end = nearer;
-                    met &= node.met::<L>(&line, end);
+                if ordered {
+                    let nearer = line.end(visitor.end());
+                    if nearer < end {
+                        end = nearer;
+                        met &= grid.met(node, &lanes, end);
+                    }
                 }
-            }
-            Content::Nothing => {}
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn voxels_are_mirrored_along_the_axes_that_the_ray_runs_down() {
-        for voxel in 0..64 {
-            for mirror in [0, 3, 12, 15, 48, 51, 60, 63] {
-                assert_eq!(mirrored(1 << voxel, mirror), 1 << (voxel ^ mirror), "{voxel} {mirror}");
             }
         }
     }
