@@ -212,6 +212,11 @@ impl Sixteen for Zmm {
         Self(unsafe { _mm512_fmadd_ps(self.0, b.0, c.0) })
     }
     #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_abs_ps(self.0) })
+    }
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm512_min_ps(self.0, other.0) })

@@ -18,6 +18,8 @@ pub trait Sixteen: Copy {
     fn mul(self, other: Self) -> Self;
     /// `self·b + c`: rounded once where the arithmetic is fused, twice elsewhere.
     fn mul_add(self, b: Self, c: Self) -> Self;
+    /// Sign bit cleared.
+    fn abs(self) -> Self;
     /// The smaller; `other` where one is NaN.
     fn min(self, other: Self) -> Self;
     /// The larger; `other` where one is NaN.
@@ -96,6 +98,13 @@ impl<L: Lanes, const N: usize> Sixteen for Several<L, N> {
         self
     }
     #[inline(always)]
+    fn abs(mut self) -> Self {
+        for a in &mut self.0 {
+            *a = a.abs();
+        }
+        self
+    }
+    #[inline(always)]
     fn min(mut self, other: Self) -> Self {
         for (a, b) in self.0.iter_mut().zip(other.0) {
             *a = a.min(b);
@@ -166,7 +175,10 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self) -> Self::Answer {
             let (a, b) = (L::Sixteen::load(&self.0), L::Sixteen::load(&self.1));
-            let sum = a.mul_add(L::Sixteen::splat(2.0), b.sub(a.mul(a))).min(a).max(b);
+            let sum = a.mul_add(L::Sixteen::splat(2.0), b.sub(a.mul(a))).add(b.abs()).min(a).max(b);
+            let mut stored = [0.0; 16];
+            sum.store(&mut stored);
+            let sum = L::Sixteen::load(&stored);
             ([a.less(b), sum.less_equal(b)], [sum.least(), sum.greatest()])
         }
     }
@@ -179,7 +191,7 @@ mod tests {
         let (mut least, mut greatest) = (f32::INFINITY, f32::NEG_INFINITY);
         for lane in 0..16 {
             let (a, b): (f32, f32) = (a[lane], b[lane]);
-            let sum = (a * 2.0 + (b - a * a)).min(a).max(b);
+            let sum = (a * 2.0 + (b - a * a) + b.abs()).min(a).max(b);
             bits[0] |= u16::from(a < b) << lane;
             bits[1] |= u16::from(sum <= b) << lane;
             least = least.min(sum);

@@ -24,6 +24,9 @@ pub(super) const PACKET: usize = 16;
 /// Packets of a bundle.
 pub(super) const PACKETS: usize = 16;
 
+// Boxes of packets are looked at as queries of a packet are.
+const _: () = assert!(PACKETS == PACKET);
+
 /// Queries of a bundle.
 pub(super) const BUNDLE: usize = PACKET * PACKETS;
 
@@ -141,13 +144,15 @@ pub(super) struct Bundle {
     pub ground: Option<Ground>,
     /// Relative to the centre too.
     pub boxes: [OriginBox; 2 * PACKETS],
-    /// Middles and halves of the packets' boxes, sixteen side by side.
-    pub middles: [[Row; 3]; PACKETS / PACKET],
-    pub halves: [[Row; 3]; PACKETS / PACKET],
+    /// Middles and halves of the packets' boxes, side by side.
+    pub middles: [Row; 3],
+    pub halves: [Row; 3],
     /// A bit a query that is a ray to the light.
     pub asked: [u16; PACKETS],
     /// A bit a query of these that nothing blocks so far.
     pub open: [u16; PACKETS],
+    /// A bit a packet that has such.
+    open_packets: u16,
     /// Largest coordinate of origins and light, in magnitude.
     pub largest: f32,
 }
@@ -158,10 +163,11 @@ impl Bundle {
             origins: [[Row::ZERO; 3]; PACKETS],
             ground: None,
             boxes: [OriginBox::EMPTY; 2 * PACKETS],
-            middles: [[Row::ZERO; 3]; PACKETS / PACKET],
-            halves: [[Row::ZERO; 3]; PACKETS / PACKET],
+            middles: [Row::ZERO; 3],
+            halves: [Row::ZERO; 3],
             asked: [0; PACKETS],
             open: [0; PACKETS],
+            open_packets: 0,
             largest: 0.0,
         }
     }
@@ -201,6 +207,10 @@ impl Bundle {
             }
         }
         self.open = self.asked;
+        self.open_packets = 0;
+        for (packet, &open) in self.open.iter().enumerate() {
+            self.open_packets |= u16::from(open != 0) << packet;
+        }
         for parent in (1..PACKETS).rev() {
             let [a, b] = [self.boxes[2 * parent], self.boxes[2 * parent + 1]];
             self.boxes[parent] = OriginBox { low: a.low.min(b.low), high: a.high.max(b.high) };
@@ -232,10 +242,9 @@ impl Bundle {
         }
         for (packet, around) in self.boxes[PACKETS..].iter().enumerate() {
             let (middle, half) = (around.middle(), around.half());
-            let (group, place) = (packet / PACKET, packet % PACKET);
             for axis in 0..3 {
-                self.middles[group][axis].0[place] = middle[axis];
-                self.halves[group][axis].0[place] = half[axis];
+                self.middles[axis].0[packet] = middle[axis];
+                self.halves[axis].0[packet] = half[axis];
             }
         }
         Some(ground)
@@ -261,7 +270,16 @@ impl Bundle {
     #[inline(always)]
     pub fn is_open(&self, part: usize) -> bool {
         let (first, last) = packets_of(part);
-        self.open[first..last].iter().any(|&open| open != 0)
+        self.open_packets >> first & (u16::MAX >> (PACKETS - (last - first))) != 0
+    }
+
+    /// Notes that queries of a packet are blocked.
+    #[inline(always)]
+    pub fn block(&mut self, packet: usize, blocked: u16) {
+        self.open[packet] &= !blocked;
+        if self.open[packet] == 0 {
+            self.open_packets &= !(1 << packet);
+        }
     }
 
     /// Notes what is settled, at the places of the queries.

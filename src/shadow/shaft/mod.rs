@@ -19,6 +19,7 @@
 //! Dmitriev, Havran, Seidel: Faster Ray Tracing with SIMD Shaft Culling. MPI-I-2004-4-006, 2004.
 
 mod bundle;
+mod cast;
 mod columns;
 mod frustum;
 mod order;

@@ -6,6 +6,7 @@
 //! what they cost alone.
 
 use super::bundle::{Bundle, Chosen, PACKET, PACKETS, Source, packets_of};
+use super::cast::{Cast, Judged, Shadow};
 use super::columns::Columns;
 use super::frustum::{Met, Shaft};
 use super::order::Order;
@@ -65,26 +66,6 @@ pub(super) struct Around<'a> {
 
 /// Of fewer packets, boxes are not looked at before a triangle is cast.
 const WORTH_JUDGING: usize = 4;
-
-/// Beyond this a plane is certain for a whole box; a little more than 1, for the rounding of sums.
-const CERTAIN: f32 = 1.001;
-
-/// Of sixteen packets, a bit each.
-struct Judged {
-    /// Those that a shadow may fall on.
-    touched: u16,
-    /// Those that are in it.
-    covered: u16,
-}
-
-/// The packets of a group that are among these: a bit each.
-#[inline(always)]
-fn part_of_group(group: usize, first: usize, last: usize) -> u16 {
-    let start = group * PACKET;
-    let from = first.max(start) - start;
-    let to = last.min(start + PACKET) - start;
-    (u16::MAX >> (PACKET - (to - from))) << from
-}
 
 const NOBODY: u32 = u32::MAX;
 
@@ -193,8 +174,7 @@ impl Walker {
         while boxes != 0 {
             let slot = boxes.trailing_zeros() as usize;
             boxes &= boxes - 1;
-            let child = node.child(slot);
-            self.steps.push(Step { child, ..step });
+            self.steps.push(Step { child: node.child(slot), ..step });
         }
     }
 
@@ -256,8 +236,7 @@ impl Walker {
                         while met != 0 {
                             let slot = met.trailing_zeros();
                             met &= met - 1;
-                            let child = node.child(slot as usize);
-                            self.rest.push(child);
+                            self.rest.push(node.child(slot as usize));
                         }
                     }
                     Child::Cluster(cluster) => {
@@ -265,7 +244,7 @@ impl Walker {
                         let cluster = &around.clusters.all()[cluster as usize];
                         let blocker = cluster.meets::<Exact, L>(ray, &lanes, around.triangles);
                         if blocker.is_some() {
-                            self.bundle.open[packet] &= !(1 << lane);
+                            self.bundle.block(packet, 1 << lane);
                             break;
                         }
                     }
@@ -299,7 +278,8 @@ impl Walker {
             if lane > 0 && cluster.ids()[lane] == cluster.ids()[lane - 1] {
                 continue;
             }
-            self.cast::<L::Sixteen>(step, (kept, lane), cluster.ids()[lane], around, tally);
+            let shadow = Shadow::<L::Sixteen>::of(&self.planes[kept], lane, cluster.ids()[lane]);
+            self.cast(step, &shadow, around, tally);
         }
     }
 
@@ -308,82 +288,38 @@ impl Walker {
     fn cast<S: Sixteen>(
         &mut self,
         step: Step,
-        (kept, lane): (usize, usize),
-        id: TriangleId,
+        shadow: &Shadow<S>,
         around: &Around,
         tally: &mut Tally,
     ) {
-        let known = &self.planes[kept];
-        let unsided = known.unsided & (1 << lane) != 0;
-        let mut planes = [[S::splat(0.0); 4]; 4];
-        for (number, plane) in planes.iter_mut().enumerate() {
-            let [x, y, z] = &known.normals[number];
-            let value = &known.values[number];
-            *plane =
-                [S::splat(x[lane]), S::splat(y[lane]), S::splat(z[lane]), S::splat(value[lane])];
-        }
         let (first, last) = packets_of(usize::from(step.part));
         // Without a side the signs of planes say nothing by themselves.
-        if unsided || last - first < WORTH_JUDGING {
+        if shadow.unsided || last - first < WORTH_JUDGING {
             for packet in first..last {
-                self.cast_on(packet, step.met, &planes, unsided, id, around, tally);
+                self.cast_on(packet, step.met, shadow, around, tally);
             }
             return;
         }
-        let mut sizes = [[S::splat(0.0); 3]; 4];
-        for (number, sizes) in sizes.iter_mut().enumerate() {
-            for (axis, size) in sizes.iter_mut().enumerate() {
-                *size = S::splat(known.normals[number][axis][lane].abs());
+        let Judged { touched, covered } = shadow.judge(&self.bundle.middles, &self.bundle.halves);
+        let mut touched = touched >> first & (u16::MAX >> (PACKETS - (last - first)));
+        while touched != 0 {
+            let packet = first + touched.trailing_zeros() as usize;
+            touched &= touched - 1;
+            if covered & (1 << packet) != 0 {
+                self.bundle.block(packet, u16::MAX);
+            } else {
+                self.cast_on(packet, step.met, shadow, around, tally);
             }
-        }
-        let mut group = first / PACKET;
-        while group * PACKET < last {
-            let Judged { mut touched, covered } = self.judge(group, &planes, &sizes);
-            touched &= part_of_group(group, first, last);
-            while touched != 0 {
-                let place = touched.trailing_zeros() as usize;
-                touched &= touched - 1;
-                let packet = group * PACKET + place;
-                if covered & (1 << place) != 0 {
-                    self.bundle.open[packet] = 0;
-                } else {
-                    self.cast_on(packet, step.met, &planes, false, id, around, tally);
-                }
-            }
-            group += 1;
         }
     }
 
-    /// Packets of sixteen whose boxes a triangle's shadow touches, and covers.
-    #[inline(always)]
-    fn judge<S: Sixteen>(&self, group: usize, planes: &[[S; 4]; 4], sizes: &[[S; 3]; 4]) -> Judged {
-        let [x, y, z] = &self.bundle.middles[group];
-        let (x, y, z) = (S::load(&x.0), S::load(&y.0), S::load(&z.0));
-        let [half_x, half_y, half_z] = &self.bundle.halves[group];
-        let (half_x, half_y, half_z) = (S::load(&half_x.0), S::load(&half_y.0), S::load(&half_z.0));
-        let infinity = S::splat(f32::INFINITY);
-        let (mut lowest, mut highest) = (infinity, infinity);
-        for ([nx, ny, nz, value], [sx, sy, sz]) in planes.iter().zip(sizes) {
-            let middle = nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, *value)));
-            let reach = sx.mul_add(half_x, sy.mul_add(half_y, sz.mul(half_z)));
-            lowest = lowest.min(middle.sub(reach));
-            highest = highest.min(middle.add(reach));
-        }
-        Judged {
-            touched: !highest.less(S::splat(-CERTAIN)),
-            covered: S::splat(CERTAIN).less(lowest),
-        }
-    }
-
-    /// Casts the shadow of one triangle on the open queries of a packet.
+    /// Casts it on a packet.
     #[inline(always)]
     fn cast_on<S: Sixteen>(
         &mut self,
         packet: usize,
         met: u16,
-        planes: &[[S; 4]; 4],
-        unsided: bool,
-        id: TriangleId,
+        shadow: &Shadow<S>,
         around: &Around,
         tally: &mut Tally,
     ) {
@@ -391,27 +327,16 @@ impl Walker {
         if open == 0 {
             return;
         }
-        let [x, y, z] = &self.bundle.origins[packet];
-        let (x, y, z) = (S::load(&x.0), S::load(&y.0), S::load(&z.0));
-        let mut least = S::splat(f32::INFINITY);
-        for [nx, ny, nz, value] in planes {
-            least = least.min(nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, *value))));
-        }
-        let (mut certain, mut missed) = (S::splat(1.0).less(least), least.less(S::splat(-1.0)));
         tally.triangle_tests += u64::from(open.count_ones());
-        if unsided {
-            (certain, missed) = (0, 0);
-        }
-        let mut doubtful = open & !(certain | missed);
-        let mut blocked = open & certain;
+        let Cast { mut blocked, mut doubtful } = shadow.cast(&self.bundle.origins[packet], open);
         while doubtful != 0 {
             let query = doubtful.trailing_zeros();
             doubtful &= doubtful - 1;
-            if self.settle(packet * PACKET + query as usize, id, around) {
+            if self.settle(packet * PACKET + query as usize, shadow.triangle, around) {
                 blocked |= 1 << query;
             }
         }
-        self.bundle.open[packet] &= !blocked;
+        self.bundle.block(packet, blocked);
     }
 
     /// Decides one triangle for one query.
