@@ -46,6 +46,16 @@ impl Columns {
         if count > 0.0 { sum / count } else { 0.0 }
     }
 
+    /// How large packets would be if all were sorted by place: if origins lay all over the largest side of their box.
+    pub fn extent_if_sorted(&self) -> f32 {
+        let mut all = OriginBox::EMPTY;
+        for around in &self.boxes {
+            all = OriginBox { low: all.low.min(around.low), high: all.high.max(around.high) };
+        }
+        let Vec3 { x, y, z } = (all.high - all.low).max(Vec3::ZERO);
+        ((x * y).max(y * z).max(z * x) / self.boxes.len() as f32).sqrt()
+    }
+
     /// An origin.
     #[inline(always)]
     pub fn origin(&self, place: u32) -> [f32; 3] {

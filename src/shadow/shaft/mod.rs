@@ -40,8 +40,9 @@ use crate::geometry::Triangles;
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally};
 
-/// Bundles whose packets are larger than so many clusters are put together anew, by place.
-const APART: f32 = 0.4;
+/// Bundles whose packets are larger than so many clusters are put together anew, by place,
+/// unless packets that are put together so are expected to be as large.
+const APART: f32 = 0.3;
 
 /// So few packets are not sorted.
 const WORTH_SORTING: usize = 4;
@@ -113,7 +114,7 @@ impl Shafts {
                 walker.bundle.tell(places, settled);
             }
         };
-        let size = APART * clusters.typical_extent();
+        let size = columns.extent_if_sorted().max(APART * clusters.typical_extent());
         let is_worth_sorting = columns.asked.len() > WORTH_SORTING;
         order.packets.clear();
         for first in (0..queries.len()).step_by(BUNDLE) {
