@@ -3,11 +3,11 @@
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-use super::engine::{Engine, Job, TestEach, admit};
+use super::engine::{Engine, Job, admit, test_each};
 use super::walk::walk_any;
 use super::{Cell, Occluder, Tally, Visit, VisitMany, Walk};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
-use crate::geometry::lanes::{Kernel, Lanes};
+use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 /// Any occluder of each ray.
@@ -33,7 +33,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for AnyOccluders<'_> {
         for (ray, found) in rays.iter().zip(found) {
             if admit(ray, tally) {
                 tally.traversals += 1;
-                let mut visitor = AnyVisitor::<T, L, false>::new(triangles, ray, found, tally);
+                let mut visitor = AnyVisitor::<T, L>::new(triangles, ray, found, tally);
                 walk_any::<W, L>(engine.walk(), ray, &mut visitor);
             }
         }
@@ -58,8 +58,7 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for OccluderIn<'_> {
         }
         let run = &engine.walk().order()[cell.start as usize..cell.end as usize];
         let mut found = None;
-        let mut visitor =
-            AnyVisitor::<T, L, false>::new(engine.triangles(), ray, &mut found, tally);
+        let mut visitor = AnyVisitor::<T, L>::new(engine.triangles(), ray, &mut found, tally);
         let _ = visitor.visit(cell, run);
         found
     }
@@ -76,7 +75,7 @@ struct AnyVisitors<'a, T, L> {
 
 impl<T: TriangleTest, L: Lanes> VisitMany for AnyVisitors<'_, T, L> {
     type One<'a>
-        = AnyVisitor<'a, T, L, true>
+        = AnyVisitor<'a, T, L>
     where
         Self: 'a;
 
@@ -88,13 +87,12 @@ impl<T: TriangleTest, L: Lanes> VisitMany for AnyVisitors<'_, T, L> {
     }
 
     #[inline(always)]
-    fn one(&mut self, ray: usize) -> AnyVisitor<'_, T, L, true> {
+    fn one(&mut self, ray: usize) -> AnyVisitor<'_, T, L> {
         AnyVisitor::new(self.triangles, &self.rays[ray], &mut self.found[ray], self.tally)
     }
 }
 
-/// `INLINED`: it is in a walk that is compiled for the instruction set.
-struct AnyVisitor<'a, T, L, const INLINED: bool> {
+struct AnyVisitor<'a, T, L> {
     triangles: &'a Triangles,
     ray: &'a Ray,
     lanes: RayLanes<L>,
@@ -103,7 +101,7 @@ struct AnyVisitor<'a, T, L, const INLINED: bool> {
     test: PhantomData<T>,
 }
 
-impl<'a, T: TriangleTest, L: Lanes, const INLINED: bool> AnyVisitor<'a, T, L, INLINED> {
+impl<'a, T: TriangleTest, L: Lanes> AnyVisitor<'a, T, L> {
     #[inline(always)]
     fn new(
         triangles: &'a Triangles,
@@ -115,26 +113,24 @@ impl<'a, T: TriangleTest, L: Lanes, const INLINED: bool> AnyVisitor<'a, T, L, IN
     }
 }
 
-impl<T: TriangleTest, L: Lanes, const INLINED: bool> Visit for AnyVisitor<'_, T, L, INLINED> {
+impl<T: TriangleTest, L: Lanes> Visit for AnyVisitor<'_, T, L> {
     #[inline(always)]
     fn visit(&mut self, cell: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
         let Self { triangles, ray, lanes, tally, found, .. } = self;
         tally.cells += 1;
         let opaque = triangles.opaque_count();
-        let job = TestEach::<T, L, _, _> {
+        test_each::<T, L>(
             triangles,
             ray,
             lanes,
             ids,
-            wanted: |id| id < opaque,
-            hit: |triangle| {
+            tally,
+            |id| id < opaque,
+            |triangle| {
                 **found = Some(Occluder { triangle, cell });
                 ControlFlow::Break(())
             },
-            test: PhantomData,
-        };
-        tally.triangle_tests += ids.len() as u64;
-        if INLINED { job.run() } else { L::run(job) }
+        )
     }
 
     #[inline(always)]

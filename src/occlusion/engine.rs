@@ -143,15 +143,14 @@ pub(super) fn test_each<T: TriangleTest, L: Lanes>(
     L::run(TestEach::<T, L, _, _> { triangles, ray, lanes, ids, wanted, hit, test: PhantomData })
 }
 
-/// The same as a job; inside of a kernel it may be [run](Kernel::run) in place.
-pub(super) struct TestEach<'a, T, L, Wanted, Hit> {
-    pub triangles: &'a Triangles,
-    pub ray: &'a Ray,
-    pub lanes: &'a RayLanes<L>,
-    pub ids: &'a [TriangleId],
-    pub wanted: Wanted,
-    pub hit: Hit,
-    pub test: PhantomData<T>,
+struct TestEach<'a, T, L, Wanted, Hit> {
+    triangles: &'a Triangles,
+    ray: &'a Ray,
+    lanes: &'a RayLanes<L>,
+    ids: &'a [TriangleId],
+    wanted: Wanted,
+    hit: Hit,
+    test: PhantomData<T>,
 }
 
 impl<T, L, Wanted, Hit> Kernel for TestEach<'_, T, L, Wanted, Hit>
