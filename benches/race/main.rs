@@ -35,8 +35,8 @@ use umbra::render::{RecordedQuery, Settings, record};
 use umbra::scene::{Scene, builtin, load};
 use umbra::shadow::Trace;
 
-/// Queries of a part.
-const PART: usize = 100_000;
+/// Queries of a part, at least: what a tile asks to all lights, for a renderer asks while that is in the nearer caches.
+const PART: usize = 20_000;
 
 const PAPER_SCENES: [&str; 4] = ["chair-room", "drum", "jittered-dense", "jittered-sparse"];
 

@@ -187,6 +187,16 @@ impl Sixteen for Zmm {
         Self(unsafe { _mm512_loadu_ps(values.as_ptr()) })
     }
     #[inline(always)]
+    fn store(self, values: &mut [f32; 16]) {
+        // SAFETY: see the head of this file; the array holds the sixteen values that are written.
+        unsafe { _mm512_storeu_ps(values.as_mut_ptr(), self.0) }
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_add_ps(self.0, other.0) })
+    }
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm512_sub_ps(self.0, other.0) })
@@ -200,6 +210,11 @@ impl Sixteen for Zmm {
     fn mul_add(self, b: Self, c: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm512_fmadd_ps(self.0, b.0, c.0) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_abs_ps(self.0) })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {

@@ -8,12 +8,18 @@ pub trait Sixteen: Copy {
     fn splat(value: f32) -> Self;
     /// Sixteen values.
     fn load(values: &[f32; 16]) -> Self;
+    /// Writes sixteen values.
+    fn store(self, values: &mut [f32; 16]);
+    /// Sum, rounded.
+    fn add(self, other: Self) -> Self;
     /// Difference, rounded.
     fn sub(self, other: Self) -> Self;
     /// Product, rounded.
     fn mul(self, other: Self) -> Self;
     /// `self·b + c`: rounded once where the arithmetic is fused, twice elsewhere.
     fn mul_add(self, b: Self, c: Self) -> Self;
+    /// Sign bit cleared.
+    fn abs(self) -> Self;
     /// The smaller; `other` where one is NaN.
     fn min(self, other: Self) -> Self;
     /// The larger; `other` where one is NaN.
@@ -58,6 +64,19 @@ impl<L: Lanes, const N: usize> Sixteen for Several<L, N> {
         Self(parts)
     }
     #[inline(always)]
+    fn store(self, values: &mut [f32; 16]) {
+        for (part, lanes) in self.0.into_iter().enumerate() {
+            lanes.store_to(values, part * L::COUNT);
+        }
+    }
+    #[inline(always)]
+    fn add(mut self, other: Self) -> Self {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a = a.add(b);
+        }
+        self
+    }
+    #[inline(always)]
     fn sub(mut self, other: Self) -> Self {
         for (a, b) in self.0.iter_mut().zip(other.0) {
             *a = a.sub(b);
@@ -75,6 +94,13 @@ impl<L: Lanes, const N: usize> Sixteen for Several<L, N> {
     fn mul_add(mut self, b: Self, c: Self) -> Self {
         for (part, a) in self.0.iter_mut().enumerate() {
             *a = a.mul_add(b.0[part], c.0[part]);
+        }
+        self
+    }
+    #[inline(always)]
+    fn abs(mut self) -> Self {
+        for a in &mut self.0 {
+            *a = a.abs();
         }
         self
     }
@@ -149,7 +175,10 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self) -> Self::Answer {
             let (a, b) = (L::Sixteen::load(&self.0), L::Sixteen::load(&self.1));
-            let sum = a.mul_add(L::Sixteen::splat(2.0), b.sub(a.mul(a))).min(a).max(b);
+            let sum = a.mul_add(L::Sixteen::splat(2.0), b.sub(a.mul(a))).add(b.abs()).min(a).max(b);
+            let mut stored = [0.0; 16];
+            sum.store(&mut stored);
+            let sum = L::Sixteen::load(&stored);
             ([a.less(b), sum.less_equal(b)], [sum.least(), sum.greatest()])
         }
     }
@@ -162,7 +191,7 @@ mod tests {
         let (mut least, mut greatest) = (f32::INFINITY, f32::NEG_INFINITY);
         for lane in 0..16 {
             let (a, b): (f32, f32) = (a[lane], b[lane]);
-            let sum = (a * 2.0 + (b - a * a)).min(a).max(b);
+            let sum = (a * 2.0 + (b - a * a) + b.abs()).min(a).max(b);
             bits[0] |= u16::from(a < b) << lane;
             bits[1] |= u16::from(sum <= b) << lane;
             least = least.min(sum);

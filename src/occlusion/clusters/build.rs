@@ -3,7 +3,7 @@
 //! Top down by the surface area heuristic with bins along the longest axis (MacDonald & Booth 1990; Wald
 //! 2007), always at a multiple of eight triangles, so that all clusters but the last are full; then halves are
 //! collapsed into nodes of eight. The counts that the heuristic weighs are clusters: a cluster costs
-//! the same however full it is.
+//! the same however full it is. How a range is divided: `divide`.
 //!
 //! MacDonald, Booth: Heuristics for Ray Tracing Using Space Subdivision. The Visual Computer 6(3), 1990.
 //! Wald: On Fast Construction of SAH-based Bounding Volume Hierarchies. Symposium on Interactive Ray Tracing 2007.
@@ -12,21 +12,20 @@ use std::ops::Range;
 
 use glam::Vec3;
 
+use super::divide::{Around, Divided, Item, divide, places_of};
 use super::{Child, Cluster, Clusters, Node, WIDTH};
 use crate::geometry::{Bounds, TriangleId, Triangles};
-
-/// Bins in which a range of triangles is sorted to find where to split it.
-const BINS: usize = 16;
 
 /// Ranges with fewer triangles are split by one thread.
 const WORTH_A_THREAD: usize = 8192;
 
 pub(super) fn build(triangles: &Triangles, ids: Range<TriangleId>) -> Clusters {
-    let mut items: Vec<Item> = ids.map(|id| Item { bounds: triangles.bounds_of(id), id }).collect();
+    let mut items: Vec<Item> = ids.map(|id| Item::new(triangles.bounds_of(id), id)).collect();
     if items.is_empty() {
         return Clusters::default();
     }
-    let tree = arrange(&mut items, 0);
+    let places = places_of(&items);
+    let tree = arrange(&mut items, &places, 0);
     let clusters: Vec<Cluster> = items.chunks(WIDTH).map(|run| cluster(triangles, run)).collect();
     let mut nodes = Vec::new();
     collapse(&tree, &mut nodes);
@@ -37,26 +36,11 @@ pub(super) fn build(triangles: &Triangles, ids: Range<TriangleId>) -> Clusters {
 }
 
 fn cluster(triangles: &Triangles, run: &[Item]) -> Cluster {
-    let ids: [TriangleId; WIDTH] = std::array::from_fn(|lane| run[lane.min(run.len() - 1)].id);
+    let ids: [TriangleId; WIDTH] = std::array::from_fn(|lane| run[lane.min(run.len() - 1)].id());
     let lanes = ids.map(|id| triangles.get(id));
     let corners = [0, 1, 2]
         .map(|corner| [0, 1, 2].map(|axis| std::array::from_fn(|lane| lanes[lane][corner][axis])));
     Cluster { corners, ids }
-}
-
-/// A triangle while its cluster is sought.
-#[derive(Clone, Copy)]
-struct Item {
-    bounds: Bounds,
-    id: TriangleId,
-}
-
-impl Item {
-    /// Twice the centre of the box.
-    #[inline(always)]
-    fn place(&self) -> Vec3 {
-        self.bounds.min + self.bounds.max
-    }
 }
 
 /// A tree while it is built: two halves, or a cluster.
@@ -67,22 +51,22 @@ struct Half {
     first: u32,
 }
 
-/// Sorts the items so that each eight in a row are a cluster.
-fn arrange(items: &mut [Item], first: u32) -> Half {
+/// Sorts the items so that each eight in a row are a cluster. The box is around their places, or somewhat larger.
+fn arrange(items: &mut [Item], places: &Around, first: u32) -> Half {
     if items.len() <= WIDTH {
-        let mut bounds = items[0].bounds;
-        for item in &items[1..] {
-            bounds = bounds.union(item.bounds);
+        let mut around = Around::NOTHING;
+        for Item(item) in &*items {
+            around.join(item);
         }
-        return Half { bounds, inside: None, first };
+        return Half { bounds: around.bounds(), inside: None, first };
     }
-    let at = split(items);
+    let Divided { at, sides } = divide(items, places);
     let (left, right) = items.split_at_mut(at);
     let middle = first + (at / WIDTH) as u32;
     let (left, right) = if left.len() + right.len() < WORTH_A_THREAD {
-        (arrange(left, first), arrange(right, middle))
+        (arrange(left, &sides[0], first), arrange(right, &sides[1], middle))
     } else {
-        rayon::join(|| arrange(left, first), || arrange(right, middle))
+        rayon::join(|| arrange(left, &sides[0], first), || arrange(right, &sides[1], middle))
     };
     let bounds = left.bounds.union(right.bounds);
     Half { bounds, inside: Some(Box::new([left, right])), first }
@@ -111,64 +95,6 @@ fn collapse(half: &Half, nodes: &mut Vec<Node>) -> u32 {
         nodes[place as usize].set(slot, &half.bounds, child);
     }
     place
-}
-
-/// Moves one side's items to the front, and says how many they are: a multiple of [`WIDTH`].
-fn split(items: &mut [Item]) -> usize {
-    let first = items[0].place();
-    let (low, high) = items
-        .iter()
-        .fold((first, first), |(low, high), item| (low.min(item.place()), high.max(item.place())));
-    let extent = high - low;
-    let axis = usize::from(extent.y > extent.x);
-    let axis = if extent.z > extent[axis] { 2 } else { axis };
-    let at = best_split(items, axis, low[axis], extent[axis]);
-    items.select_nth_unstable_by(at, |a, b| a.place()[axis].total_cmp(&b.place()[axis]));
-    at
-}
-
-/// The multiple of [`WIDTH`] next to the cheapest boundary of bins.
-fn best_split(items: &[Item], axis: usize, low: f32, extent: f32) -> usize {
-    let round = |count: usize| {
-        let most = (items.len() - 1) / WIDTH;
-        ((count + WIDTH / 2) / WIDTH).clamp(1, most) * WIDTH
-    };
-    let scale = BINS as f32 / extent;
-    if !scale.is_finite() || items.len() <= 2 * WIDTH {
-        return round(items.len() / 2);
-    }
-    let mut bins: [(usize, Option<Bounds>); BINS] = [(0, None); BINS];
-    let join = |bounds: Option<Bounds>, other: Bounds| {
-        Some(bounds.map_or(other, |bounds| bounds.union(other)))
-    };
-    for item in items {
-        let bin = (((item.place()[axis] - low) * scale) as usize).min(BINS - 1);
-        bins[bin] = (bins[bin].0 + 1, join(bins[bin].1, item.bounds));
-    }
-    // What lies right of each boundary.
-    let mut right = [(0usize, 0f32); BINS];
-    let (mut count, mut bounds) = (0, None);
-    for bin in (1..BINS).rev() {
-        count += bins[bin].0;
-        if let Some(more) = bins[bin].1 {
-            bounds = join(bounds, more);
-        }
-        right[bin] = (count, bounds.map_or(0.0, half_area));
-    }
-    let (mut count, mut bounds) = (0, None);
-    let mut best = (f32::INFINITY, items.len() / 2);
-    for bin in 1..BINS {
-        count += bins[bin - 1].0;
-        if let Some(more) = bins[bin - 1].1 {
-            bounds = join(bounds, more);
-        }
-        let cost = |(count, area): (usize, f32)| count.div_ceil(WIDTH) as f32 * area;
-        let cost = cost((count, bounds.map_or(0.0, half_area))) + cost(right[bin]);
-        if count > 0 && right[bin].0 > 0 && cost < best.0 {
-            best = (cost, count);
-        }
-    }
-    round(best.1)
 }
 
 fn half_area(bounds: Bounds) -> f32 {

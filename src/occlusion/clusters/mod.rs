@@ -8,6 +8,7 @@
 //! for the tree.
 
 mod build;
+mod divide;
 mod node;
 
 pub(crate) use node::{Child, Node};

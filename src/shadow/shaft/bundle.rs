@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
+use super::columns::{Columns, Row, around};
 use super::planes::Ground;
 use crate::geometry::Ray;
 use crate::geometry::lanes::{Lanes, Sixteen, splat, sub};
-use crate::occlusion::WIDTH;
 use crate::scene::Light;
 use crate::shadow::ShadowQuery;
 
@@ -23,6 +23,9 @@ pub(super) const PACKET: usize = 16;
 
 /// Packets of a bundle.
 pub(super) const PACKETS: usize = 16;
+
+// Boxes of packets are looked at as queries of a packet are.
+const _: () = assert!(PACKETS == PACKET);
 
 /// Queries of a bundle.
 pub(super) const BUNDLE: usize = PACKET * PACKETS;
@@ -46,7 +49,7 @@ impl Source {
 
     /// Which of the rays are rays to the light, bit for bit: a bit each. Rays as [`Lanes::rays`] gives them.
     #[inline(always)]
-    fn sends<L: Lanes>(&self, rays: &[L; 7]) -> u32 {
+    pub fn sends<L: Lanes>(&self, rays: &[L; 7]) -> u32 {
         let [ox, oy, oz, dx, dy, dz, end] = *rays;
         // What is compared with the direction, what must be finite, and the end.
         let (expected, finite, last) = match *self {
@@ -70,46 +73,47 @@ impl Source {
 #[derive(Clone, Copy)]
 pub(super) struct Chosen<'a> {
     queries: &'a [ShadowQuery],
-    /// Which of them.
-    places: &'a [u32],
+    columns: &'a Columns,
+    places: Places<'a>,
+}
+
+/// Which queries.
+#[derive(Clone, Copy)]
+pub(super) enum Places<'a> {
+    /// So many in a row, from one that begins a packet on.
+    Row { first: usize, count: usize },
+    /// These, in this order.
+    These(&'a [u32]),
 }
 
 impl<'a> Chosen<'a> {
-    pub fn new(queries: &'a [ShadowQuery], places: &'a [u32]) -> Self {
-        Self { queries, places }
+    pub fn new(queries: &'a [ShadowQuery], columns: &'a Columns, places: Places<'a>) -> Self {
+        Self { queries, columns, places }
     }
 
     #[inline(always)]
     pub fn count(&self) -> usize {
-        self.places.len()
+        match self.places {
+            Places::Row { count, .. } => count,
+            Places::These(places) => places.len(),
+        }
     }
 
     /// The ray of one of them.
     #[inline(always)]
     pub fn ray(&self, index: usize) -> &'a Ray {
-        &self.queries[self.places[index] as usize].ray
-    }
-
-    /// Eight rays from `first` on; the last one is repeated.
-    #[inline(always)]
-    fn rays(&self, first: usize) -> [&'a Ray; WIDTH] {
-        let Some(eight) = self.places.get(first..first + WIDTH) else {
-            let last = self.places.len() - 1;
-            let mut rays = [self.ray(last); WIDTH];
-            for (lane, ray) in rays.iter_mut().enumerate() {
-                *ray = self.ray((first + lane).min(last));
-            }
-            return rays;
+        let place = match self.places {
+            Places::Row { first, .. } => first + index,
+            Places::These(places) => places[index] as usize,
         };
-        let mut rays = [&self.queries[eight[0] as usize].ray; WIDTH];
-        for lane in 1..WIDTH {
-            rays[lane] = &self.queries[eight[lane] as usize].ray;
-        }
-        rays
+        &self.queries[place].ray
     }
 }
 
-/// A box of origins, relative to the bundle's centre.
+/// A half, and sixteen roundings of it.
+const HALF: f32 = 0.5 + 1.0 / (1 << 20) as f32;
+
+/// A box of origins.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OriginBox {
     pub low: Vec3,
@@ -117,21 +121,38 @@ pub(super) struct OriginBox {
 }
 
 impl OriginBox {
-    const EMPTY: Self = Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
+    pub const EMPTY: Self = Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
+
+    #[inline(always)]
+    pub fn middle(&self) -> Vec3 {
+        0.5 * (self.low + self.high)
+    }
+
+    /// Half of each side, and a little more for the rounding of all that it enters.
+    #[inline(always)]
+    pub fn half(&self) -> Vec3 {
+        HALF * (self.high - self.low)
+    }
 }
 
 /// Queries side by side. Boxes are a heap: 1 is around all, the parts of `i` are `2 i` and `2 i + 1`, and
 /// `PACKETS + p` is that of packet `p`.
 pub(super) struct Bundle {
-    /// Origins relative to the centre, by axis; places not used repeat the first.
-    pub origins: [[[f32; PACKET]; PACKETS]; 3],
+    /// Of each packet, origins relative to the centre by axis; places not asked repeat one that is.
+    pub origins: [[Row; 3]; PACKETS],
     /// Where the centre is, and what planes are made for; it may serve several bundles to one light.
     pub ground: Option<Ground>,
+    /// Relative to the centre too.
     pub boxes: [OriginBox; 2 * PACKETS],
+    /// Middles and halves of the packets' boxes, side by side.
+    pub middles: [Row; 3],
+    pub halves: [Row; 3],
     /// A bit a query that is a ray to the light.
     pub asked: [u16; PACKETS],
     /// A bit a query of these that nothing blocks so far.
     pub open: [u16; PACKETS],
+    /// A bit a packet that has such.
+    open_packets: u16,
     /// Largest coordinate of origins and light, in magnitude.
     pub largest: f32,
 }
@@ -139,11 +160,14 @@ pub(super) struct Bundle {
 impl Bundle {
     pub const fn empty() -> Self {
         Self {
-            origins: [[[0.0; PACKET]; PACKETS]; 3],
+            origins: [[Row::ZERO; 3]; PACKETS],
             ground: None,
             boxes: [OriginBox::EMPTY; 2 * PACKETS],
+            middles: [Row::ZERO; 3],
+            halves: [Row::ZERO; 3],
             asked: [0; PACKETS],
             open: [0; PACKETS],
+            open_packets: 0,
             largest: 0.0,
         }
     }
@@ -152,67 +176,48 @@ impl Bundle {
     /// if none is asked, or if coordinates are so large or small that products of them could over- or underflow.
     #[inline(always)]
     pub fn fill<L: Lanes>(&mut self, source: &Source, queries: &Chosen<'_>) -> Option<Ground> {
-        self.open = [0; PACKETS];
         let packets = queries.count().div_ceil(PACKET);
-        let (mut first, mut stray) = (None, 0u16);
-        for packet in 0..packets {
-            let mut asked = 0;
-            for start in [0, WIDTH] {
-                let place = packet * PACKET + start;
-                let rays = queries.rays(place);
-                let mut lane = 0;
-                while lane < WIDTH {
-                    let eight = L::rays(&rays, lane);
-                    asked |= source.sends::<L>(&eight) << (start + lane);
-                    for (origins, coordinates) in self.origins.iter_mut().zip(eight) {
-                        coordinates.store_to(&mut origins[packet], start + lane);
-                    }
-                    lane += L::COUNT;
-                }
-            }
-            let present = queries.count() - packet * PACKET;
-            if present < PACKET {
-                asked &= (1 << present) - 1;
-            }
-            self.open[packet] = asked as u16;
-            if asked != u32::from(u16::MAX) {
-                stray |= 1 << packet;
-            }
-            if asked != 0 && first.is_none() {
-                first = Some((packet, asked.trailing_zeros() as usize));
-            }
-        }
-        let first = first?;
-        let mut origin = [0.0; 3];
-        for (axis, origin) in origin.iter_mut().enumerate() {
-            *origin = self.origins[axis][first.0][first.1];
-        }
-        for packet in 0..packets {
-            if stray & (1 << packet) == 0 {
-                continue;
-            }
-            for lane in 0..PACKET {
-                for (axis, origin) in origin.iter_mut().enumerate() {
-                    let value = &mut self.origins[axis][packet][lane];
-                    if self.open[packet] & (1 << lane) != 0 {
-                        *origin = *value;
-                    } else {
-                        *value = *origin;
-                    }
-                }
-            }
-        }
+        self.asked = [0; PACKETS];
         self.boxes = [OriginBox::EMPTY; 2 * PACKETS];
-        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        for packet in 0..packets {
-            let mut around = OriginBox::EMPTY;
-            for axis in 0..3 {
-                let values = L::Sixteen::load(&self.origins[axis][packet]);
-                (around.low[axis], around.high[axis]) = (values.least(), values.greatest());
+        let columns = queries.columns;
+        match queries.places {
+            Places::Row { first, .. } => {
+                let these = first / PACKET..first / PACKET + packets;
+                self.origins[..packets].copy_from_slice(&columns.origins[these.clone()]);
+                self.asked[..packets].copy_from_slice(&columns.asked[these.clone()]);
+                self.boxes[PACKETS..][..packets].copy_from_slice(&columns.boxes[these]);
             }
-            low = low.min(around.low);
-            high = high.max(around.high);
-            self.boxes[PACKETS + packet] = around;
+            Places::These(places) => {
+                for (packet, places) in places.chunks(PACKET).enumerate() {
+                    let rows = &mut self.origins[packet];
+                    for lane in 0..PACKET {
+                        let place = *places.get(lane).unwrap_or(&places[0]);
+                        let origin = columns.origin(place);
+                        for (row, coordinate) in rows.iter_mut().zip(origin) {
+                            row.0[lane] = coordinate;
+                        }
+                    }
+                    self.asked[packet] = u16::MAX >> (PACKET - places.len());
+                }
+                // Not in the loop before: whole vectors of what was just written in parts would be waited for.
+                for packet in 0..packets {
+                    let asked = self.asked[packet];
+                    self.boxes[PACKETS + packet] = around::<L>(&self.origins[packet], asked);
+                }
+            }
+        }
+        self.open = self.asked;
+        self.open_packets = 0;
+        for (packet, &open) in self.open.iter().enumerate() {
+            self.open_packets |= u16::from(open != 0) << packet;
+        }
+        for parent in (1..PACKETS).rev() {
+            let [a, b] = [self.boxes[2 * parent], self.boxes[2 * parent + 1]];
+            self.boxes[parent] = OriginBox { low: a.low.min(b.low), high: a.high.max(b.high) };
+        }
+        let OriginBox { low, high } = self.boxes[1];
+        if low.x > high.x {
+            return None;
         }
         let light = match *source {
             Source::Point(light) => light,
@@ -225,22 +230,22 @@ impl Bundle {
         let known = self.ground.filter(|ground| ground.holds(low, high));
         let ground = known.unwrap_or_else(|| Ground::around(source, low, high, self.largest));
         self.ground = Some(ground);
-        for axis in 0..3 {
-            for values in &mut self.origins[axis][..packets] {
-                for value in values {
-                    *value -= ground.centre[axis];
-                }
+        let centre = ground.centre;
+        for rows in &mut self.origins[..packets] {
+            for (row, centre) in rows.iter_mut().zip(centre.to_array()) {
+                L::Sixteen::load(&row.0).sub(L::Sixteen::splat(centre)).store(&mut row.0);
             }
         }
-        for packet in 0..packets {
-            let around = &mut self.boxes[PACKETS + packet];
-            around.low -= ground.centre;
-            around.high -= ground.centre;
+        for around in &mut self.boxes {
+            around.low -= centre;
+            around.high -= centre;
         }
-        self.asked = self.open;
-        for parent in (1..PACKETS).rev() {
-            let [a, b] = [self.boxes[2 * parent], self.boxes[2 * parent + 1]];
-            self.boxes[parent] = OriginBox { low: a.low.min(b.low), high: a.high.max(b.high) };
+        for (packet, around) in self.boxes[PACKETS..].iter().enumerate() {
+            let (middle, half) = (around.middle(), around.half());
+            for axis in 0..3 {
+                self.middles[axis].0[packet] = middle[axis];
+                self.halves[axis].0[packet] = half[axis];
+            }
         }
         Some(ground)
     }
@@ -265,15 +270,38 @@ impl Bundle {
     #[inline(always)]
     pub fn is_open(&self, part: usize) -> bool {
         let (first, last) = packets_of(part);
-        self.open[first..last].iter().any(|&open| open != 0)
+        self.open_packets >> first & (u16::MAX >> (PACKETS - (last - first))) != 0
+    }
+
+    /// Notes that queries of a packet are blocked.
+    #[inline(always)]
+    pub fn block(&mut self, packet: usize, blocked: u16) {
+        self.open[packet] &= !blocked;
+        if self.open[packet] == 0 {
+            self.open_packets &= !(1 << packet);
+        }
     }
 
     /// Notes what is settled, at the places of the queries.
-    pub fn tell(&self, places: &[u32], settled: &mut [Option<bool>]) {
-        for (index, &place) in places.iter().enumerate() {
-            let (packet, bit) = (index / PACKET, 1 << (index % PACKET));
-            if self.asked[packet] & bit != 0 {
-                settled[place as usize] = Some(self.open[packet] & bit == 0);
+    pub fn tell(&self, places: Places<'_>, settled: &mut [Option<bool>]) {
+        match places {
+            Places::Row { first, count } => {
+                let packets = settled[first..first + count].chunks_mut(PACKET);
+                for (packet, settled) in packets.enumerate() {
+                    let (asked, open) = (self.asked[packet], self.open[packet]);
+                    for (lane, settled) in settled.iter_mut().enumerate() {
+                        let blocked = Some(open & (1 << lane) == 0);
+                        *settled = if asked & (1 << lane) != 0 { blocked } else { *settled };
+                    }
+                }
+            }
+            Places::These(places) => {
+                for (packet, places) in places.chunks(PACKET).enumerate() {
+                    let open = self.open[packet];
+                    for (lane, &place) in places.iter().enumerate() {
+                        settled[place as usize] = Some(open & (1 << lane) == 0);
+                    }
+                }
             }
         }
     }

@@ -19,6 +19,8 @@
 //! Dmitriev, Havran, Seidel: Faster Ray Tracing with SIMD Shaft Culling. MPI-I-2004-4-006, 2004.
 
 mod bundle;
+mod cast;
+mod columns;
 mod frustum;
 mod order;
 mod planes;
@@ -27,8 +29,9 @@ mod walk;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use bundle::{BUNDLE, Chosen, PACKET, Source};
-use order::{SortByPlace, are_apart};
+use bundle::{BUNDLE, Chosen, PACKET, Places, Source};
+use columns::Read;
+use order::SortByPlace;
 use walk::{Around, Walker};
 
 use super::stock::Stock;
@@ -37,11 +40,12 @@ use crate::geometry::Triangles;
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally};
 
-/// Bundles whose packets are larger than so many clusters are put together anew, by place.
+/// Bundles whose packets are larger than so many clusters are put together anew, by place,
+/// unless packets that are put together so are expected to be as large.
 const APART: f32 = 0.3;
 
-/// Fewer queries than this are not sorted.
-const WORTH_SORTING: usize = 4 * PACKET;
+/// So few packets are not sorted.
+const WORTH_SORTING: usize = 4;
 
 /// Shafts to the lights of a scene.
 pub(super) struct Shafts {
@@ -90,6 +94,48 @@ impl Shafts {
         }
     }
 
+    fn settle_with(
+        &self,
+        walker: &mut Walker,
+        clusters: &Clusters,
+        light: usize,
+        queries: &[ShadowQuery],
+        settled: &mut [Option<bool>],
+        tally: &mut Tally,
+    ) {
+        let source = &self.sources[light];
+        let mut columns = std::mem::take(&mut walker.columns);
+        let mut order = std::mem::take(&mut walker.order);
+        self.arithmetic.run(Read { columns: &mut columns, source, queries });
+        let mut walk = |places, leaves_spread| {
+            let queries = Chosen::new(queries, &columns, places);
+            let around = Around { clusters, triangles: &self.triangles, queries, leaves_spread };
+            if self.arithmetic.run(Walk { walker, source, around, tally }) {
+                walker.bundle.tell(places, settled);
+            }
+        };
+        let size = columns.extent_if_sorted().max(APART * clusters.typical_extent());
+        let is_worth_sorting = columns.asked.len() > WORTH_SORTING;
+        order.packets.clear();
+        for first in (0..queries.len()).step_by(BUNDLE) {
+            let count = BUNDLE.min(queries.len() - first);
+            let packets = first / PACKET..(first + count).div_ceil(PACKET);
+            let is_apart = columns.typical_extent(packets.clone()) > size;
+            if is_apart && is_worth_sorting {
+                order.packets.extend(packets.map(|packet| packet as u32));
+            } else {
+                walk(Places::Row { first, count }, is_apart && self.leaves_spread);
+            }
+        }
+        if !order.packets.is_empty() {
+            self.arithmetic.run(SortByPlace { order: &mut order, columns: &columns });
+            for places in order.places.chunks(BUNDLE) {
+                walk(Places::These(places), self.leaves_spread);
+            }
+        }
+        (walker.columns, walker.order) = (columns, order);
+    }
+
     fn walker(&self) -> Box<Walker> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         idle.pop().unwrap_or_else(|| Box::new(Walker::new()))
@@ -107,33 +153,7 @@ impl Verdict for Shafts {
         let Some(clusters) = &self.clusters else { return };
         let mut walker = self.walker();
         walker.begin();
-        let (mut all, mut apart) = std::mem::take(&mut walker.orders);
-        all.clear();
-        all.extend(0..queries.len() as u32);
-        apart.places.clear();
-        let mut walk = |places: &[u32], leaves_spread| {
-            let queries = Chosen::new(queries, places);
-            let around = Around { clusters, triangles: &self.triangles, queries, leaves_spread };
-            let source = &self.sources[light];
-            if self.arithmetic.run(Walk { walker: &mut walker, source, around, tally }) {
-                walker.bundle.tell(places, settled);
-            }
-        };
-        let size = APART * clusters.typical_extent();
-        for (places, queries) in all.chunks(BUNDLE).zip(queries.chunks(BUNDLE)) {
-            if are_apart(queries, size) {
-                apart.places.extend(places);
-            } else {
-                walk(places, false);
-            }
-        }
-        if apart.places.len() > WORTH_SORTING {
-            self.arithmetic.run(SortByPlace { order: &mut apart, queries });
-        }
-        for places in apart.places.chunks(BUNDLE) {
-            walk(places, self.leaves_spread);
-        }
-        walker.orders = (all, apart);
+        self.settle_with(&mut walker, clusters, light, queries, settled, tally);
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(walker);
     }
 

@@ -1,58 +1,40 @@
 //! Queries in the order of where they start: along a Morton curve.
 //!
 //! What a mirror or a curved surface sees next lies all over the scene; sorted, neighbours in the order are
-//! neighbours in space again, and shafts are thin. Queries that start in one cell keep their order.
+//! neighbours in space again, and shafts are thin. The box of all is halved along its longest side, the half likewise, and so
+//! on: so a flat region is cut into as many cells as a cube. Queries that start in one cell keep their order.
 //!
 //! Morton: A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing. IBM, 1966.
 
 use glam::Vec3;
 
 use super::bundle::PACKET;
+use super::columns::{Columns, Row};
 use crate::geometry::lanes::{Lanes, LanesJob};
-use crate::shadow::ShadowQuery;
 
-/// Bits of a cell's place by axis: 32 cells along the longest side of what is sorted.
-const BITS: u32 = 5;
+/// So often is the box of all halved: a bit of a key each.
+const BITS: usize = 13;
 
-/// Bits that are sorted by at once: half of a key.
-const DIGIT: u32 = (3 * BITS).div_ceil(2);
-
-/// Digits that there are.
-const DIGITS: usize = 1 << DIGIT;
-
-/// Of the queries of a packet, and of all that are sorted, one in so many is looked at to find how far apart they are.
-const LOOKED_AT: usize = 5;
-
-/// Whether packets of these queries are on average larger than this.
-pub(super) fn are_apart(queries: &[ShadowQuery], size: f32) -> bool {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for packet in queries.chunks(PACKET) {
-        let (mut low, mut high) = (packet[0].ray.origin, packet[0].ray.origin);
-        let mut place = LOOKED_AT;
-        while place < packet.len() {
-            low = low.min(packet[place].ray.origin);
-            high = high.max(packet[place].ray.origin);
-            place += LOOKED_AT;
-        }
-        sum += (high - low).max_element();
-        count += 1.0;
-    }
-    sum > size * count
-}
+/// Cells, so many that the counts stay in the nearest cache.
+const CELLS: usize = 1 << BITS;
 
 /// Which queries, in which order; kept from one time to the next.
 #[derive(Default)]
 pub(super) struct Order {
+    /// Packets whose queries are sorted.
+    pub packets: Vec<u32>,
+    /// Places in order.
     pub places: Vec<u32>,
-    /// Keys with places: by places, then half sorted.
-    keyed: Vec<u64>,
-    halfway: Vec<u64>,
+    /// Cells of the queries of these packets.
+    cells: Vec<[u16; PACKET]>,
+    /// Of each cell, how many queries it has; then, where the next one goes.
+    counts: Vec<u32>,
 }
 
-/// Sorts places by where their queries start.
+/// Sorts the queries of packets by where they start; those that are not asked are left out.
 pub(super) struct SortByPlace<'a> {
     pub order: &'a mut Order,
-    pub queries: &'a [ShadowQuery],
+    pub columns: &'a Columns,
 }
 
 impl LanesJob for SortByPlace<'_> {
@@ -60,102 +42,202 @@ impl LanesJob for SortByPlace<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Order { places, keyed, halfway } = self.order;
+        let Order { packets, places, cells, counts } = self.order;
+        let Columns { origins, asked, boxes } = self.columns;
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let mut looked_at = 0;
-        while looked_at < places.len() {
-            let origin = self.queries[places[looked_at] as usize].ray.origin;
-            (low, high) = (low.min(origin), high.max(origin));
-            looked_at += LOOKED_AT;
+        for &packet in &*packets {
+            let around = &boxes[packet as usize];
+            (low, high) = (low.min(around.low), high.max(around.high));
         }
-        let longest = (high - low).max_element();
-        let cells = (1 << BITS) as f32;
-        let scale = if longest > 0.0 { cells / longest } else { 0.0 };
-        let mut counts = [[0u32; DIGITS]; 2];
-        keyed.resize(places.len(), 0);
-        halfway.resize(places.len(), 0);
-        for (keyed, &place) in keyed.iter_mut().zip(&*places) {
-            let origin = self.queries[place as usize].ray.origin;
-            let mut key = 0;
-            for axis in 0..3 {
-                // The conversion saturates, and NaN is 0: what lies outside belongs to a cell at the side.
-                let cell = ((origin[axis] - low[axis]) * scale).min(cells - 1.0) as u32;
-                key |= spread(cell) << axis;
-            }
-            counts[0][key as usize % DIGITS] += 1;
-            counts[1][key as usize / DIGITS] += 1;
-            *keyed = u64::from(key) << 32 | u64::from(place);
+        let curve = Curve::through(low, high);
+        cells.resize(packets.len(), [0; PACKET]);
+        counts.clear();
+        counts.resize(CELLS, 0);
+        let counts: &mut [u32; CELLS] = counts.as_mut_slice().try_into().expect("so many cells");
+        let mut count = 0;
+        for (cells, &packet) in cells.iter_mut().zip(&*packets) {
+            *cells = curve.cells(&origins[packet as usize]);
+            each(asked[packet as usize], |lane| counts[usize::from(cells[lane]) % CELLS] += 1);
+            count += asked[packet as usize].count_ones() as usize;
         }
-        for counts in &mut counts {
-            let mut sum = 0;
-            for count in counts {
-                sum += std::mem::replace(count, sum);
-            }
+        let mut sum = 0;
+        for count in &mut *counts {
+            sum += std::mem::replace(count, sum);
         }
-        for &keyed in &*keyed {
-            let next = &mut counts[0][(keyed >> 32) as usize % DIGITS];
-            halfway[*next as usize] = keyed;
-            *next += 1;
-        }
-        for &keyed in &*halfway {
-            let next = &mut counts[1][(keyed >> 32) as usize / DIGITS];
-            places[*next as usize] = keyed as u32;
-            *next += 1;
+        places.resize(count, 0);
+        for (cells, &packet) in cells.iter().zip(&*packets) {
+            each(asked[packet as usize], |lane| {
+                let next = &mut counts[usize::from(cells[lane]) % CELLS];
+                places[*next as usize] = packet * PACKET as u32 + lane as u32;
+                *next += 1;
+            });
         }
     }
 }
 
-/// Bit `i` to bit `3 i`, of five bits.
+/// Does something for each bit.
 #[inline(always)]
-fn spread(bits: u32) -> u32 {
-    let bits = (bits | bits << 8) & 0x0000_100f;
-    let bits = (bits | bits << 4) & 0x0000_10c3;
-    (bits | bits << 2) & 0x0000_1249
+fn each(bits: u16, mut act: impl FnMut(usize)) {
+    if bits == u16::MAX {
+        (0..PACKET).for_each(act);
+        return;
+    }
+    let mut left = bits;
+    while left != 0 {
+        act(left.trailing_zeros() as usize);
+        left &= left - 1;
+    }
 }
+
+/// How a box is cut into cells, and in which order they come.
+struct Curve {
+    low: Vec3,
+    /// Cells for a unit of way, by axis.
+    scale: Vec3,
+    /// Cells along each axis.
+    cells: [u32; 3],
+    /// Of each bit of a key, the highest first: its axis, and which bit of the cell's place there it is.
+    bits: [(usize, u32); BITS],
+}
+
+impl Curve {
+    fn through(low: Vec3, high: Vec3) -> Self {
+        let mut size = high - low;
+        let mut axes = [0; BITS];
+        let mut counts = [0; 3];
+        for axis in &mut axes {
+            *axis = size.max_position();
+            size[*axis] *= 0.5;
+            counts[*axis] += 1;
+        }
+        let mut left = counts;
+        let mut bits = [(0, 0); BITS];
+        for (bit, axis) in bits.iter_mut().zip(axes) {
+            left[axis] -= 1;
+            *bit = (axis, left[axis]);
+        }
+        let cells = counts.map(|count| 1 << count);
+        let mut scale = Vec3::ZERO;
+        for axis in 0..3 {
+            let extent = high[axis] - low[axis];
+            scale[axis] = if extent > 0.0 { cells[axis] as f32 / extent } else { 0.0 };
+        }
+        Self { low, scale, cells, bits }
+    }
+
+    /// The cells of a packet.
+    #[inline(always)]
+    fn cells(&self, origins: &[Row; 3]) -> [u16; PACKET] {
+        let mut places = [[0u32; PACKET]; 3];
+        for (axis, places) in places.iter_mut().enumerate() {
+            let last = (self.cells[axis] - 1) as f32;
+            for (place, coordinate) in places.iter_mut().zip(origins[axis].0) {
+                let whole = (coordinate - self.low[axis]) * self.scale[axis];
+                let whole = if whole < last { whole } else { last };
+                *place = (whole + WHOLE).to_bits();
+            }
+        }
+        let mut keys = [0u32; PACKET];
+        for (bit, (axis, place)) in self.bits.into_iter().enumerate() {
+            let shift = (BITS - 1 - bit) as u32;
+            for (key, places) in keys.iter_mut().zip(places[axis]) {
+                *key |= (places >> place & 1) << shift;
+            }
+        }
+        let mut cells = [0; PACKET];
+        for (cell, key) in cells.iter_mut().zip(keys) {
+            *cell = key as u16;
+        }
+        cells
+    }
+}
+
+/// Added to a number below 2¹² it leaves the number, rounded, in the lowest bits of the sum.
+const WHOLE: f32 = (1 << 23) as f32;
 
 #[cfg(test)]
 mod tests {
-    use glam::UVec3;
-
+    use super::super::bundle::Source;
+    use super::super::columns::Read;
     use super::*;
     use crate::geometry::Ray;
     use crate::geometry::lanes::Arithmetic;
-    use crate::shadow::Path;
+    use crate::shadow::{Path, ShadowQuery};
+
+    const LIGHT: Vec3 = Vec3::new(1.0, 2.0, 50.0);
+
+    fn queries(origins: impl Iterator<Item = Vec3>) -> Vec<ShadowQuery> {
+        let query =
+            |origin| ShadowQuery { ray: Ray::between(origin, LIGHT), path: Path::EYE, spawner: 0 };
+        origins.map(query).collect()
+    }
+
+    /// The places of queries in order, all packets sorted.
+    fn sorted(arithmetic: Arithmetic, queries: &[ShadowQuery]) -> Vec<u32> {
+        let mut columns = Columns::default();
+        arithmetic.run(Read { columns: &mut columns, source: &Source::Point(LIGHT), queries });
+        let packets = (0..columns.asked.len() as u32).collect();
+        let mut order = Order { packets, ..Order::default() };
+        arithmetic.run(SortByPlace { order: &mut order, columns: &columns });
+        order.places
+    }
+
+    fn available() -> impl Iterator<Item = Arithmetic> {
+        Arithmetic::ALL.into_iter().filter(|arithmetic| arithmetic.is_available())
+    }
 
     #[test]
-    fn five_bits_are_spread_apart() {
-        for bits in 0..32u32 {
-            let expected = (0..5).fold(0, |sum, bit| sum | (bits >> bit & 1) << (3 * bit));
-            assert_eq!(spread(bits), expected, "{bits:05b}");
+    fn the_longest_side_is_halved_first_and_flat_regions_are_cut_as_often() {
+        let curve = Curve::through(Vec3::ZERO, Vec3::new(5.0, 0.0, 2.0));
+        assert_eq!(curve.cells[1], 1, "nothing to halve");
+        assert_eq!(curve.cells[0] * curve.cells[2], CELLS as u32);
+        assert_eq!(curve.bits.map(|(axis, _)| axis)[..4], [0, 0, 2, 0]);
+    }
+
+    #[test]
+    fn sorted_places_are_all_there_and_neighbours_in_order_are_neighbours_in_space() {
+        // 8 by 8 by 4 corners of a lattice, in an order that jumps.
+        let origin = |place: u32| {
+            let number = place * 77 % 256;
+            Vec3::new((number % 8) as f32, (number / 8 % 8) as f32, (number / 64) as f32)
+        };
+        let queries = queries((0..1000).map(origin));
+        for arithmetic in available() {
+            let places = sorted(arithmetic, &queries);
+            let mut all = places.clone();
+            all.sort_unstable();
+            assert_eq!(all, (0..1000).collect::<Vec<u32>>());
+            let away = |pair: &[u32]| origin(pair[0]).distance(origin(pair[1]));
+            let way: f32 = places.windows(2).map(away).sum();
+            // A step of two or three from one corner to the next; in the old order it was five.
+            assert!(way < 600.0, "{arithmetic:?}: {way}");
+            for pair in places.windows(2) {
+                let same = origin(pair[0]) == origin(pair[1]);
+                assert!(!same || pair[0] < pair[1], "those of one cell keep their order");
+            }
         }
     }
 
     #[test]
-    fn sorted_places_are_all_there_along_the_curve_and_keep_their_order_within_a_cell() {
-        let origin = |place: u32| {
-            let part = |prime: u32| (place * prime % 4) as f32;
-            8.0 * Vec3::new(part(7), part(5), part(3)) - 3.0
-        };
-        let query = |place| ShadowQuery {
-            ray: Ray::towards(origin(place), Vec3::X),
-            path: Path::EYE,
-            spawner: 0,
-        };
-        let queries: Vec<ShadowQuery> = (0..1000).map(query).collect();
-        for arithmetic in Arithmetic::ALL.into_iter().filter(|a| a.is_available()) {
-            let mut order = Order { places: (0..1000).rev().collect(), ..Order::default() };
-            arithmetic.run(SortByPlace { order: &mut order, queries: &queries });
-            let mut all = order.places.clone();
-            all.sort_unstable();
-            assert_eq!(all, (0..1000).collect::<Vec<u32>>());
-            let key = |place: u32| {
-                let cell = ((origin(place) + 3.0) / 24.0 * 32.0).as_uvec3().min(UVec3::splat(31));
-                spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
-            };
-            for pair in order.places.windows(2) {
-                let (a, b) = (key(pair[0]), key(pair[1]));
-                assert!(a < b || (a == b && pair[0] > pair[1]), "{pair:?}");
-            }
+    fn queries_that_are_not_to_the_light_are_left_out() {
+        let mut queries = queries((0..100).map(|place| Vec3::splat((place * 37 % 100) as f32)));
+        for place in [0, 15, 16, 50, 99] {
+            queries[place].ray.direction.y += 1.0;
+        }
+        queries[70].ray.origin.x = f32::NAN;
+        for arithmetic in available() {
+            let mut places = sorted(arithmetic, &queries);
+            places.sort_unstable();
+            let expected = |place: &u32| ![0, 15, 16, 50, 70, 99].contains(place);
+            assert_eq!(places, (0..100).filter(expected).collect::<Vec<u32>>());
+        }
+    }
+
+    #[test]
+    fn queries_that_all_start_in_one_point_keep_their_order() {
+        let queries = queries(std::iter::repeat_n(Vec3::ONE, 40));
+        for arithmetic in available() {
+            assert_eq!(sorted(arithmetic, &queries), (0..40).collect::<Vec<u32>>());
         }
     }
 }

@@ -36,7 +36,7 @@ const LEAST: f64 = 1e-30;
 
 /// Of the first bundle, so much larger is the ground for those after it: planes are kept for all of them. Error bounds
 /// grow by as much, and with them the few queries that are left to the exact test.
-const ROOM: f32 = 4.0;
+const ROOM: f32 = 8.0;
 
 /// Half the box of a bundle counts as at least this part of the largest coordinate.
 const LEAST_HALF: f32 = 1.0 / (1 << 24) as f32;

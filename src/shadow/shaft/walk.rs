@@ -6,6 +6,8 @@
 //! what they cost alone.
 
 use super::bundle::{Bundle, Chosen, PACKET, PACKETS, Source, packets_of};
+use super::cast::{Cast, Judged, Shadow};
+use super::columns::Columns;
 use super::frustum::{Met, Shaft};
 use super::order::Order;
 use super::planes::{Ground, Planes};
@@ -26,7 +28,7 @@ struct Step {
 }
 
 /// Clusters whose planes are kept: parts of a bundle come to the same ones, and so do bundles in a row. 33 KiB.
-const KEPT: usize = 64;
+const KEPT: usize = 256;
 
 /// Fewer rays of a packet than this go on one by one.
 const COMPANY: u32 = 8;
@@ -37,9 +39,9 @@ pub(super) struct Walker {
     shafts: [Shaft; 2 * PACKETS],
     rays: [PacketRays; PACKETS],
     /// Parts whose shaft is known: a bit each.
-    known: u32,
+    known: u64,
     /// Packets whose rays are.
-    rays_known: u16,
+    rays_known: u32,
     /// Planes of clusters that were tested of late, and which clusters.
     planes: [Planes; KEPT],
     planes_of: [u32; KEPT],
@@ -48,8 +50,9 @@ pub(super) struct Walker {
     steps: Vec<Step>,
     /// The same for a ray that goes on alone.
     rest: Vec<Child>,
-    /// Lent to whoever hands out bundles: all queries, and those that are sorted.
-    pub orders: (Vec<u32>, Order),
+    /// Lent to whoever hands out bundles.
+    pub columns: Columns,
+    pub order: Order,
 }
 
 /// What stays the same for a bundle.
@@ -60,6 +63,9 @@ pub(super) struct Around<'a> {
     /// Whether a bundle that does not stay together is passed on.
     pub leaves_spread: bool,
 }
+
+/// Of fewer packets, boxes are not looked at before a triangle is cast.
+const WORTH_JUDGING: usize = 4;
 
 const NOBODY: u32 = u32::MAX;
 
@@ -76,7 +82,8 @@ impl Walker {
             planes_for: None,
             steps: Vec::new(),
             rest: Vec::new(),
-            orders: Default::default(),
+            columns: Columns::default(),
+            order: Order::default(),
         }
     }
 
@@ -216,7 +223,7 @@ impl Walker {
             let lane = rays.trailing_zeros() as usize;
             rays &= rays - 1;
             let ray = around.queries.ray(packet * PACKET + lane);
-            let lanes = RayLanes::<L>::new(ray);
+            let lanes = RayLanes::<L>::of::<Exact>(ray);
             let shaft = Shaft::of_ray(ray, self.bundle.largest);
             self.rest.clear();
             self.rest.push(child);
@@ -237,7 +244,7 @@ impl Walker {
                         let cluster = &around.clusters.all()[cluster as usize];
                         let blocker = cluster.meets::<Exact, L>(ray, &lanes, around.triangles);
                         if blocker.is_some() {
-                            self.bundle.open[packet] &= !(1 << lane);
+                            self.bundle.block(packet, 1 << lane);
                             break;
                         }
                     }
@@ -271,7 +278,8 @@ impl Walker {
             if lane > 0 && cluster.ids()[lane] == cluster.ids()[lane - 1] {
                 continue;
             }
-            self.cast::<L::Sixteen>(step, (kept, lane), cluster.ids()[lane], around, tally);
+            let shadow = Shadow::<L::Sixteen>::of(&self.planes[kept], lane, cluster.ids()[lane]);
+            self.cast(step, &shadow, around, tally);
         }
     }
 
@@ -280,49 +288,55 @@ impl Walker {
     fn cast<S: Sixteen>(
         &mut self,
         step: Step,
-        (kept, lane): (usize, usize),
-        id: TriangleId,
+        shadow: &Shadow<S>,
         around: &Around,
         tally: &mut Tally,
     ) {
-        let known = &self.planes[kept];
-        let unsided = known.unsided & (1 << lane) != 0;
-        let mut planes = [[S::splat(0.0); 4]; 4];
-        for (number, plane) in planes.iter_mut().enumerate() {
-            let [x, y, z] = &known.normals[number];
-            let value = &known.values[number];
-            *plane =
-                [S::splat(x[lane]), S::splat(y[lane]), S::splat(z[lane]), S::splat(value[lane])];
-        }
-        let (one, minus_one) = (S::splat(1.0), S::splat(-1.0));
         let (first, last) = packets_of(usize::from(step.part));
-        for packet in first..last {
-            let open = self.bundle.open[packet] & step.met;
-            if open == 0 {
-                continue;
+        // Without a side the signs of planes say nothing by themselves.
+        if shadow.unsided || last - first < WORTH_JUDGING {
+            for packet in first..last {
+                self.cast_on(packet, step.met, shadow, around, tally);
             }
-            let [x, y, z] = &self.bundle.origins;
-            let (x, y, z) = (S::load(&x[packet]), S::load(&y[packet]), S::load(&z[packet]));
-            let mut least = S::splat(f32::INFINITY);
-            for [nx, ny, nz, value] in planes {
-                least = least.min(nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, value))));
-            }
-            let (mut certain, mut missed) = (one.less(least), least.less(minus_one));
-            tally.triangle_tests += u64::from(open.count_ones());
-            if unsided {
-                (certain, missed) = (0, 0);
-            }
-            let mut doubtful = open & !(certain | missed);
-            let mut blocked = open & certain;
-            while doubtful != 0 {
-                let query = doubtful.trailing_zeros();
-                doubtful &= doubtful - 1;
-                if self.settle(packet * PACKET + query as usize, id, around) {
-                    blocked |= 1 << query;
-                }
-            }
-            self.bundle.open[packet] &= !blocked;
+            return;
         }
+        let Judged { touched, covered } = shadow.judge(&self.bundle.middles, &self.bundle.halves);
+        let mut touched = touched >> first & (u16::MAX >> (PACKETS - (last - first)));
+        while touched != 0 {
+            let packet = first + touched.trailing_zeros() as usize;
+            touched &= touched - 1;
+            if covered & (1 << packet) != 0 {
+                self.bundle.block(packet, u16::MAX);
+            } else {
+                self.cast_on(packet, step.met, shadow, around, tally);
+            }
+        }
+    }
+
+    /// Casts it on a packet.
+    #[inline(always)]
+    fn cast_on<S: Sixteen>(
+        &mut self,
+        packet: usize,
+        met: u16,
+        shadow: &Shadow<S>,
+        around: &Around,
+        tally: &mut Tally,
+    ) {
+        let open = self.bundle.open[packet] & met;
+        if open == 0 {
+            return;
+        }
+        tally.triangle_tests += u64::from(open.count_ones());
+        let Cast { mut blocked, mut doubtful } = shadow.cast(&self.bundle.origins[packet], open);
+        while doubtful != 0 {
+            let query = doubtful.trailing_zeros();
+            doubtful &= doubtful - 1;
+            if self.settle(packet * PACKET + query as usize, shadow.triangle, around) {
+                blocked |= 1 << query;
+            }
+        }
+        self.bundle.block(packet, blocked);
     }
 
     /// Decides one triangle for one query.

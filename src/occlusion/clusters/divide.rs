@@ -1,0 +1,298 @@
+//! Where to divide a range of triangles, and doing so.
+//!
+//! Large ranges are cut at the boundary of a bin, in one pass without branches, and the few triangles that are missing for whole
+//! clusters come from the bin beside it. In small ranges, of which a bin holds a few, the exact place of the cut is found.
+
+use glam::{Vec3, Vec4, Vec4Swizzles};
+
+use super::WIDTH;
+use crate::geometry::{Bounds, TriangleId};
+
+/// Bins in which a range of triangles is sorted to find where to cut it.
+const BINS: usize = 16;
+
+/// Ranges with fewer triangles are divided exactly.
+const EXACTLY: usize = 256;
+
+/// A box in two vectors of four; the fourth coordinates mean nothing.
+#[derive(Clone, Copy)]
+pub(super) struct Around {
+    low: Vec4,
+    high: Vec4,
+}
+
+impl Around {
+    pub const NOTHING: Self = Self { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
+
+    #[inline(always)]
+    pub fn join(&mut self, other: &Self) {
+        self.low = self.low.min(other.low);
+        self.high = self.high.max(other.high);
+    }
+
+    #[inline(always)]
+    fn join_place(&mut self, place: Vec4) {
+        self.low = self.low.min(place);
+        self.high = self.high.max(place);
+    }
+
+    /// Half of its surface; 0 of nothing.
+    fn half_area(&self) -> f32 {
+        let Vec3 { x, y, z } = (self.high - self.low).xyz().max(Vec3::ZERO);
+        x * y + y * z + z * x
+    }
+
+    pub fn bounds(&self) -> Bounds {
+        Bounds { min: self.low.xyz(), max: self.high.xyz() }
+    }
+}
+
+/// A triangle while its cluster is sought: its box, and its number in bits of the fourth coordinate.
+#[derive(Clone, Copy)]
+pub(super) struct Item(pub Around);
+
+impl Item {
+    pub fn new(bounds: Bounds, id: TriangleId) -> Self {
+        let low = bounds.min.extend(f32::from_bits(id));
+        Self(Around { low, high: bounds.max.extend(0.0) })
+    }
+
+    pub fn id(&self) -> TriangleId {
+        self.0.low.w.to_bits()
+    }
+
+    /// Twice the centre of the box.
+    #[inline(always)]
+    fn place(&self) -> Vec4 {
+        self.0.low + self.0.high
+    }
+}
+
+/// The box around the places of items.
+pub(super) fn places_of(items: &[Item]) -> Around {
+    let mut places = Around::NOTHING;
+    for item in items {
+        places.join_place(item.place());
+    }
+    places
+}
+
+/// Items in two parts: how many the first has, a multiple of [`WIDTH`], and boxes around the places of each, or larger.
+pub(super) struct Divided {
+    pub at: usize,
+    pub sides: [Around; 2],
+}
+
+/// Moves one side's items to the front.
+pub(super) fn divide(items: &mut [Item], places: &Around) -> Divided {
+    let extent = places.high - places.low;
+    let axis = usize::from(extent.y > extent.x);
+    let axis = if extent.z > extent[axis] { 2 } else { axis };
+    let slots = Slots { axis, low: places.low[axis], scale: BINS as f32 / extent[axis] };
+    let cut = if slots.scale.is_finite() && items.len() > 2 * WIDTH {
+        Cut::best(items, slots)
+    } else {
+        None
+    };
+    match cut {
+        Some(cut) if items.len() >= EXACTLY => at_bin(items, slots, cut),
+        _ => {
+            let count = cut.map_or(items.len() / 2, |cut| cut.count);
+            let at = whole_clusters(count, items.len());
+            items.select_nth_unstable_by(at, |a, b| a.place()[axis].total_cmp(&b.place()[axis]));
+            let (left, right) = items.split_at(at);
+            Divided { at, sides: [places_of(left), places_of(right)] }
+        }
+    }
+}
+
+/// Divides at the boundary of a bin, or a few items beside it.
+fn at_bin(items: &mut [Item], slots: Slots, cut: Cut) -> Divided {
+    let Cut { bin, count, mut sides } = cut;
+    let mut front = 0;
+    for index in 0..items.len() {
+        // Without a branch: which side comes next is anybody's guess.
+        let is_left = slots.of(&items[index]) < bin;
+        items.swap(index, front);
+        front += usize::from(is_left);
+    }
+    let at = whole_clusters(count, items.len());
+    // What is missing comes from the bin beyond the boundary, as far as there is something in it.
+    if at > count {
+        gather(&mut items[count..], End::Front, at - count, |item| slots.of(item) == bin);
+    } else {
+        gather(&mut items[..count], End::Back, count - at, |item| slots.of(item) == bin - 1);
+    }
+    let (from, to) = (count.min(at), count.max(at));
+    let receives = &mut sides[usize::from(at < count)];
+    for item in &items[from..to] {
+        receives.join_place(item.place());
+    }
+    Divided { at, sides }
+}
+
+/// Which end of a slice.
+#[derive(Clone, Copy)]
+enum End {
+    Front,
+    Back,
+}
+
+/// Swaps so many items that belong there to one end; fewer if there are no more.
+fn gather(items: &mut [Item], end: End, most: usize, belongs: impl Fn(&Item) -> bool) {
+    let last = items.len() - 1;
+    let place = |number: usize| match end {
+        End::Front => number,
+        End::Back => last - number,
+    };
+    let mut gathered = 0;
+    for number in 0..items.len() {
+        if gathered == most {
+            break;
+        }
+        if belongs(&items[place(number)]) {
+            items.swap(place(number), place(gathered));
+            gathered += 1;
+        }
+    }
+}
+
+/// So many of a range, rounded to whole clusters, so that something is left on either side.
+fn whole_clusters(count: usize, of: usize) -> usize {
+    let most = (of - 1) / WIDTH;
+    ((count + WIDTH / 2) / WIDTH).clamp(1, most) * WIDTH
+}
+
+/// Bins along an axis.
+#[derive(Clone, Copy)]
+struct Slots {
+    axis: usize,
+    low: f32,
+    scale: f32,
+}
+
+impl Slots {
+    #[inline(always)]
+    fn of(&self, item: &Item) -> usize {
+        (((item.place()[self.axis] - self.low) * self.scale) as usize).min(BINS - 1)
+    }
+}
+
+/// What is in a bin.
+#[derive(Clone, Copy)]
+struct Bin {
+    count: usize,
+    around: Around,
+    places: Around,
+}
+
+impl Bin {
+    const EMPTY: Self = Self { count: 0, around: Around::NOTHING, places: Around::NOTHING };
+
+    #[inline(always)]
+    fn join(&mut self, other: &Self) {
+        self.count += other.count;
+        self.around.join(&other.around);
+        self.places.join(&other.places);
+    }
+
+    fn cost(&self) -> f32 {
+        self.count.div_ceil(WIDTH) as f32 * self.around.half_area()
+    }
+}
+
+/// Before which bin to cut, how many items come before it, and boxes around the places on either side.
+#[derive(Clone, Copy)]
+struct Cut {
+    bin: usize,
+    count: usize,
+    sides: [Around; 2],
+}
+
+impl Cut {
+    /// The cheapest.
+    fn best(items: &[Item], slots: Slots) -> Option<Self> {
+        let mut bins = [Bin::EMPTY; BINS];
+        for item in items {
+            let bin = &mut bins[slots.of(item)];
+            bin.count += 1;
+            bin.around.join(&item.0);
+            bin.places.join_place(item.place());
+        }
+        let mut right = [Bin::EMPTY; BINS + 1];
+        for bin in (1..BINS).rev() {
+            right[bin] = right[bin + 1];
+            right[bin].join(&bins[bin]);
+        }
+        let mut left = Bin::EMPTY;
+        let mut least = f32::INFINITY;
+        let mut best = None;
+        for bin in 1..BINS {
+            left.join(&bins[bin - 1]);
+            let cost = left.cost() + right[bin].cost();
+            if left.count > 0 && right[bin].count > 0 && cost < least {
+                least = cost;
+                best =
+                    Some(Self { bin, count: left.count, sides: [left.places, right[bin].places] });
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Items of which many share a place.
+    fn items(places: &[(u8, u8, u8)]) -> Vec<Item> {
+        let item = |(id, &(x, y, z)): (usize, &(u8, u8, u8))| {
+            let low = Vec3::new(f32::from(x), f32::from(y), f32::from(z));
+            Item::new(Bounds { min: low, max: low + Vec3::splat(0.5) }, id as TriangleId)
+        };
+        places.iter().enumerate().map(item).collect()
+    }
+
+    fn holds(around: &Around, place: Vec4) -> bool {
+        around.low.xyz().cmple(place.xyz()).all() && place.xyz().cmple(around.high.xyz()).all()
+    }
+
+    proptest! {
+        #[test]
+        fn a_range_is_divided_into_whole_clusters_and_nothing_is_lost(
+            places in prop::collection::vec((0u8..200, 0u8..20, 0u8..3), WIDTH + 1..1500),
+        ) {
+            let mut items = items(&places);
+            let around = places_of(&items);
+            let Divided { at, sides } = divide(&mut items, &around);
+            prop_assert!(at % WIDTH == 0 && at > 0 && at < items.len());
+            for (index, item) in items.iter().enumerate() {
+                prop_assert!(holds(&sides[usize::from(index >= at)], item.place()));
+            }
+            let mut ids: Vec<TriangleId> = items.iter().map(Item::id).collect();
+            ids.sort_unstable();
+            prop_assert_eq!(ids, (0..places.len() as TriangleId).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn two_heaps_are_taken_apart_but_for_a_part_of_a_cluster() {
+        let places: Vec<(u8, u8, u8)> =
+            (0..603).map(|number| (if number % 3 == 0 { 200 } else { 0 }, 0, 0)).collect();
+        let mut items = items(&places);
+        let around = places_of(&items);
+        let Divided { at, .. } = divide(&mut items, &around);
+        let strays =
+            |items: &[Item], heap: f32| items.iter().filter(|item| item.0.low.x != heap).count();
+        assert!(strays(&items[..at], 0.0) + strays(&items[at..], 200.0) <= WIDTH / 2, "{at}");
+    }
+
+    #[test]
+    fn items_in_one_place_are_halved() {
+        let mut items = items(&[(7, 7, 7); 320]);
+        let around = places_of(&items);
+        assert_eq!(divide(&mut items, &around).at, 160);
+    }
+}
