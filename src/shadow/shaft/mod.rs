@@ -60,7 +60,7 @@ pub(super) struct Shafts {
     /// Whether bundles that do not stay together are left to a light buffer.
     leaves_spread: bool,
     arithmetic: Arithmetic,
-    /// Walkers that nobody uses now; as many are made as threads ask at once, 40 KiB each.
+    /// Walkers that nobody uses now; as many are made as threads ask at once, 150 KiB each and 16 bytes a query.
     idle: Mutex<Vec<Box<Walker>>>,
 }
 

@@ -27,7 +27,7 @@ struct Step {
     child: Child,
 }
 
-/// Clusters whose planes are kept: parts of a bundle come to the same ones, and so do bundles in a row. 33 KiB.
+/// Clusters whose planes are kept: parts of a bundle come to the same ones, and so do bundles in a row. 130 KiB.
 const KEPT: usize = 256;
 
 /// Fewer rays of a packet than this go on one by one.
