@@ -91,3 +91,130 @@ impl<S: Sixteen> Shadow<S> {
 fn load<S: Sixteen>(rows: &[Row; 3]) -> [S; 3] {
     [S::load(&rows[0].0), S::load(&rows[1].0), S::load(&rows[2].0)]
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use proptest::prelude::*;
+
+    use super::super::bundle::{PACKET, Source};
+    use super::super::columns::around;
+    use super::super::planes::Ground;
+    use super::*;
+    use crate::geometry::Triangles;
+    use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
+    use crate::occlusion::Clusters;
+
+    /// A triangle, a light, and sixteen packets of origins, each around a place.
+    struct Case {
+        triangle: [Vec3; 3],
+        light: Vec3,
+        packets: Vec<[Row; 3]>,
+    }
+
+    impl LanesJob for Case {
+        type Answer = (Judged, Vec<Cast>);
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Answer {
+            let clusters = Clusters::new(&Triangles::new([self.triangle], []));
+            let mut packets = self.packets;
+            let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+            for packet in &packets {
+                let around = around::<L>(packet, u16::MAX);
+                (low, high) = (low.min(around.low), high.max(around.high));
+            }
+            let source = Source::Point(self.light);
+            let ground = Ground::around(&source, low, high, 10.0);
+            let mut planes = Planes::EMPTY;
+            planes.set(&ground, &clusters.all()[0]);
+            let (mut middles, mut halves) = ([Row::ZERO; 3], [Row::ZERO; 3]);
+            for (place, packet) in packets.iter_mut().enumerate() {
+                for (row, centre) in packet.iter_mut().zip(ground.centre.to_array()) {
+                    for value in &mut row.0 {
+                        *value -= centre;
+                    }
+                }
+                let around = around::<L>(packet, u16::MAX);
+                let (middle, half) = (around.middle(), around.half());
+                for axis in 0..3 {
+                    middles[axis].0[place] = middle[axis];
+                    halves[axis].0[place] = half[axis];
+                }
+            }
+            let shadow = Shadow::<L::Sixteen>::of(&planes, 0, 0);
+            let mut casts = Vec::new();
+            for packet in &packets {
+                casts.push(shadow.cast(packet, u16::MAX));
+            }
+            let judged = if shadow.unsided {
+                Judged { touched: u16::MAX, covered: 0 }
+            } else {
+                shadow.judge(&middles, &halves)
+            };
+            (judged, casts)
+        }
+    }
+
+    /// Packets of origins on the floor, each on a square by itself.
+    fn floor() -> Vec<[Row; 3]> {
+        let mut packets = vec![[Row::ZERO; 3]; PACKET];
+        for (number, [x, _, z]) in packets.iter_mut().enumerate() {
+            for lane in 0..PACKET {
+                x.0[lane] = (number % 4 * 4 + lane % 4) as f32 - 8.0;
+                z.0[lane] = (number / 4 * 4 + lane / 4) as f32 - 8.0;
+            }
+        }
+        packets
+    }
+
+    #[test]
+    fn packets_under_a_canopy_are_covered_and_those_beside_it_untouched() {
+        let light = Vec3::new(0.1, 100.0, 0.2);
+        let corner = |x: f32, z: f32| Vec3::new(x, 1.0, z);
+        let canopy = [corner(-100.0, -100.0), corner(100.0, -100.0), corner(0.0, 200.0)];
+        // Over most of the first square, and a little of two beside it.
+        let parasol = [corner(-9.0, -9.0), corner(-2.0, -9.0), corner(-9.0, -2.0)];
+        for arithmetic in Arithmetic::ALL.into_iter().filter(|a| a.is_available()) {
+            let (under, _) = arithmetic.run(Case { triangle: canopy, light, packets: floor() });
+            assert_eq!((under.touched, under.covered), (u16::MAX, u16::MAX), "{arithmetic:?}");
+            let (some, _) = arithmetic.run(Case { triangle: parasol, light, packets: floor() });
+            assert_eq!((some.touched, some.covered), (0b1_0011, 0), "{arithmetic:?}");
+        }
+    }
+
+    fn point(reach: f32) -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-reach..reach).prop_map(Vec3::from_array)
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_judged_of_a_box_holds_for_every_query_in_it(
+            triangle in prop::array::uniform3(point(2.0)),
+            light in point(4.0).prop_map(|place| place + Vec3::new(0.0, 6.0, 0.0)),
+            places in prop::collection::vec(point(3.0), PACKET),
+            offsets in prop::collection::vec(point(0.3), PACKET),
+        ) {
+            let packet = |place: &Vec3| {
+                let mut rows = [Row::ZERO; 3];
+                for (lane, offset) in offsets.iter().enumerate() {
+                    let origin = *place - Vec3::new(0.0, 3.0, 0.0) + *offset;
+                    for (row, coordinate) in rows.iter_mut().zip(origin.to_array()) {
+                        row.0[lane] = coordinate;
+                    }
+                }
+                rows
+            };
+            for arithmetic in Arithmetic::ALL.into_iter().filter(|a| a.is_available()) {
+                let packets = places.iter().map(packet).collect();
+                let (judged, casts) = arithmetic.run(Case { triangle, light, packets });
+                for (place, cast) in casts.iter().enumerate() {
+                    let bit = 1 << place;
+                    let Cast { blocked, doubtful } = *cast;
+                    prop_assert!(judged.touched & bit != 0 || blocked | doubtful == 0);
+                    prop_assert!(judged.covered & bit == 0 || blocked == u16::MAX);
+                }
+            }
+        }
+    }
+}
