@@ -1,5 +1,6 @@
-//! An engine that is asked rays in the order of where they start, as `shaft` does (`src/shadow/shaft/order.rs`): along a
-//! Morton curve of 32 cells a side over what one light is asked within a tile, by two passes of a radix sort.
+//! An engine that is asked rays in the order of where they start: along a Morton curve of 32 cells a side over what one light
+//! is asked within a tile, by two passes of a radix sort. `shaft` sorted so too before it sorted rows of origins, in one pass
+//! (`src/shadow/shaft/order.rs`), which an engine that takes rays could not use as they are.
 
 use glam::Vec3;
 use umbra::geometry::Ray;

@@ -124,6 +124,11 @@ impl OriginBox {
     pub const EMPTY: Self = Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
 
     #[inline(always)]
+    pub fn union(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    #[inline(always)]
     pub fn middle(&self) -> Vec3 {
         0.5 * (self.low + self.high)
     }
@@ -212,8 +217,7 @@ impl Bundle {
             self.open_packets |= u16::from(open != 0) << packet;
         }
         for parent in (1..PACKETS).rev() {
-            let [a, b] = [self.boxes[2 * parent], self.boxes[2 * parent + 1]];
-            self.boxes[parent] = OriginBox { low: a.low.min(b.low), high: a.high.max(b.high) };
+            self.boxes[parent] = self.boxes[2 * parent].union(self.boxes[2 * parent + 1]);
         }
         let OriginBox { low, high } = self.boxes[1];
         if low.x > high.x {
@@ -254,15 +258,8 @@ impl Bundle {
     /// than clusters are.
     #[inline(always)]
     pub fn is_spread(&self, cluster: f32) -> bool {
-        let (mut sum, mut count) = (0.0, 0.0);
-        for (around, &asked) in self.boxes[PACKETS..].iter().zip(&self.asked) {
-            if asked != 0 {
-                sum += (around.high - around.low).max_element();
-                count += 1.0;
-            }
-        }
+        let packet = mean_extent(&self.boxes[PACKETS..], &self.asked);
         let whole = (self.boxes[1].high - self.boxes[1].low).max_element();
-        let packet = sum / count;
         packet > SPREAD_WHOLE * whole && packet > SPREAD_CLUSTERS * cluster
     }
 
@@ -305,6 +302,19 @@ impl Bundle {
             }
         }
     }
+}
+
+/// The mean of the longest sides of the boxes of packets, of those that are asked; 0 if none is.
+#[inline(always)]
+pub(super) fn mean_extent(boxes: &[OriginBox], asked: &[u16]) -> f32 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (around, &asked) in boxes.iter().zip(asked) {
+        if asked != 0 {
+            sum += (around.high - around.low).max_element();
+            count += 1.0;
+        }
+    }
+    if count > 0.0 { sum / count } else { 0.0 }
 }
 
 /// The packets of a part of the heap.

@@ -4,7 +4,7 @@
 
 use glam::Vec3;
 
-use super::bundle::{BUNDLE, OriginBox, PACKET, PACKETS, Source};
+use super::bundle::{BUNDLE, OriginBox, PACKET, PACKETS, Source, mean_extent};
 use crate::geometry::Ray;
 use crate::geometry::lanes::{Lanes, LanesJob, Sixteen};
 use crate::occlusion::WIDTH;
@@ -36,22 +36,12 @@ pub(super) struct Columns {
 impl Columns {
     /// The mean of the longest sides of boxes of these packets.
     pub fn typical_extent(&self, packets: std::ops::Range<usize>) -> f32 {
-        let (mut sum, mut count) = (0.0, 0.0);
-        for (around, &asked) in self.boxes[packets.clone()].iter().zip(&self.asked[packets]) {
-            if asked != 0 {
-                sum += (around.high - around.low).max_element();
-                count += 1.0;
-            }
-        }
-        if count > 0.0 { sum / count } else { 0.0 }
+        mean_extent(&self.boxes[packets.clone()], &self.asked[packets])
     }
 
     /// How large packets would be if all were sorted by place: if origins lay all over the largest side of their box.
     pub fn extent_if_sorted(&self) -> f32 {
-        let mut all = OriginBox::EMPTY;
-        for around in &self.boxes {
-            all = OriginBox { low: all.low.min(around.low), high: all.high.max(around.high) };
-        }
+        let all = self.boxes.iter().copied().fold(OriginBox::EMPTY, OriginBox::union);
         let Vec3 { x, y, z } = (all.high - all.low).max(Vec3::ZERO);
         ((x * y).max(y * z).max(z * x) / self.boxes.len() as f32).sqrt()
     }

@@ -8,7 +8,7 @@
 
 use glam::Vec3;
 
-use super::bundle::PACKET;
+use super::bundle::{OriginBox, PACKET};
 use super::columns::{Columns, Row};
 use crate::geometry::lanes::{Lanes, LanesJob};
 
@@ -44,12 +44,11 @@ impl LanesJob for SortByPlace<'_> {
     fn run<L: Lanes>(self) {
         let Order { packets, places, cells, counts } = self.order;
         let Columns { origins, asked, boxes } = self.columns;
-        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let mut all = OriginBox::EMPTY;
         for &packet in &*packets {
-            let around = &boxes[packet as usize];
-            (low, high) = (low.min(around.low), high.max(around.high));
+            all = all.union(boxes[packet as usize]);
         }
-        let curve = Curve::through(low, high);
+        let curve = Curve::through(all.low, all.high);
         cells.resize(packets.len(), [0; PACKET]);
         counts.clear();
         counts.resize(CELLS, 0);

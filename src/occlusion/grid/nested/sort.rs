@@ -37,9 +37,7 @@ impl Extent {
     pub fn union(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
-}
 
-impl Extent {
     /// What of it is in another one, with padding all around.
     #[inline(always)]
     pub fn within(self, other: Self, padding: f32) -> Self {
