@@ -22,20 +22,16 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for AnyOccluders<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, engine: &Engine<W, T>) {
-        let Self { rays, found, tally } = self;
-        let triangles = engine.triangles();
         if W::INLINED && L::COUNT > 4 {
             if W::IN_PLACE {
-                let mut visitors =
-                    AnyVisitors::<T, L, true> { triangles, rays, found, tally, kind: PhantomData };
-                engine.walk().walk_many::<L, _>(rays, &mut visitors);
+                self.inlined::<W, T, L, true>(engine);
             } else {
-                let mut visitors =
-                    AnyVisitors::<T, L, false> { triangles, rays, found, tally, kind: PhantomData };
-                engine.walk().walk_many::<L, _>(rays, &mut visitors);
+                self.inlined::<W, T, L, false>(engine);
             }
             return;
         }
+        let Self { rays, found, tally } = self;
+        let triangles = engine.triangles();
         for (ray, found) in rays.iter().zip(found) {
             if admit(ray, tally) {
                 tally.traversals += 1;
@@ -43,6 +39,21 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for AnyOccluders<'_> {
                 walk_any::<W, L>(engine.walk(), ray, &mut visitor);
             }
         }
+    }
+}
+
+impl AnyOccluders<'_> {
+    /// With the walk compiled for the lanes; `IN_PLACE`: see [`Walk::IN_PLACE`].
+    #[inline(always)]
+    fn inlined<W: Walk, T: TriangleTest, L: Lanes, const IN_PLACE: bool>(
+        self,
+        engine: &Engine<W, T>,
+    ) {
+        let Self { rays, found, tally } = self;
+        let triangles = engine.triangles();
+        let mut visitors =
+            AnyVisitors::<T, L, IN_PLACE> { triangles, rays, found, tally, kind: PhantomData };
+        engine.walk().walk_many::<L, _>(rays, &mut visitors);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::cast::Boxes;
 use super::columns::{Columns, Row, around};
 use super::planes::Ground;
 use crate::geometry::Ray;
@@ -149,9 +150,8 @@ pub(super) struct Bundle {
     pub ground: Option<Ground>,
     /// Relative to the centre too.
     pub boxes: [OriginBox; 2 * PACKETS],
-    /// Middles and halves of the packets' boxes, side by side.
-    pub middles: [Row; 3],
-    pub halves: [Row; 3],
+    /// Those of the packets, side by side.
+    pub beside: Boxes,
     /// A bit a query that is a ray to the light.
     pub asked: [u16; PACKETS],
     /// A bit a query of these that nothing blocks so far.
@@ -168,8 +168,7 @@ impl Bundle {
             origins: [[Row::ZERO; 3]; PACKETS],
             ground: None,
             boxes: [OriginBox::EMPTY; 2 * PACKETS],
-            middles: [Row::ZERO; 3],
-            halves: [Row::ZERO; 3],
+            beside: Boxes::NONE,
             asked: [0; PACKETS],
             open: [0; PACKETS],
             open_packets: 0,
@@ -244,13 +243,7 @@ impl Bundle {
             around.low -= centre;
             around.high -= centre;
         }
-        for (packet, around) in self.boxes[PACKETS..].iter().enumerate() {
-            let (middle, half) = (around.middle(), around.half());
-            for axis in 0..3 {
-                self.middles[axis].0[packet] = middle[axis];
-                self.halves[axis].0[packet] = half[axis];
-            }
-        }
+        self.beside.set(&self.boxes[PACKETS..]);
         Some(ground)
     }
 

@@ -3,6 +3,7 @@
 //! First on the boxes of sixteen packets at once: most triangles that may shade a part of a bundle touch two or three of its
 //! packets. Then on the queries of those, sixteen at once again.
 
+use super::bundle::OriginBox;
 use super::columns::Row;
 use super::planes::Planes;
 use crate::geometry::TriangleId;
@@ -18,6 +19,28 @@ pub(super) struct Shadow<S> {
     planes: [[S; 4]; 4],
     /// Whether it is not certain on which side of the triangle the light is: then planes say nothing.
     pub unsided: bool,
+}
+
+/// Boxes of sixteen packets, side by side.
+pub(super) struct Boxes {
+    middles: [Row; 3],
+    halves: [Row; 3],
+}
+
+impl Boxes {
+    pub const NONE: Self = Self { middles: [Row::ZERO; 3], halves: [Row::ZERO; 3] };
+
+    /// Takes over up to sixteen.
+    #[inline(always)]
+    pub fn set(&mut self, boxes: &[OriginBox]) {
+        for (place, around) in boxes.iter().enumerate() {
+            let (middle, half) = (around.middle(), around.half());
+            for axis in 0..3 {
+                self.middles[axis].0[place] = middle[axis];
+                self.halves[axis].0[place] = half[axis];
+            }
+        }
+    }
 }
 
 /// Of sixteen packets, a bit each.
@@ -50,14 +73,14 @@ impl<S: Sixteen> Shadow<S> {
         Self { triangle, planes, unsided: known.unsided & (1 << lane) != 0 }
     }
 
-    /// On which of sixteen boxes it falls, given by their middles and halves. Not for those without a side.
+    /// On which of sixteen boxes it falls. Not for those without a side.
     ///
     /// A plane's value in a box is that in the middle, and half of the box times the normal's magnitudes more or less. What
     /// rounding there errs by is within the bound that the plane was divided by, as it is for an origin.
     #[inline(always)]
-    pub fn judge(&self, middles: &[Row; 3], halves: &[Row; 3]) -> Judged {
-        let [x, y, z] = load::<S>(middles);
-        let [half_x, half_y, half_z] = load::<S>(halves);
+    pub fn judge(&self, boxes: &Boxes) -> Judged {
+        let [x, y, z] = load::<S>(&boxes.middles);
+        let [half_x, half_y, half_z] = load::<S>(&boxes.halves);
         let (mut lowest, mut highest) = (S::splat(f32::INFINITY), S::splat(f32::INFINITY));
         for [nx, ny, nz, value] in self.planes {
             let middle = nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, value)));
@@ -119,29 +142,25 @@ mod tests {
         fn run<L: Lanes>(self) -> Self::Answer {
             let clusters = Clusters::new(&Triangles::new([self.triangle], []));
             let mut packets = self.packets;
-            let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+            let mut all = OriginBox::EMPTY;
             for packet in &packets {
-                let around = around::<L>(packet, u16::MAX);
-                (low, high) = (low.min(around.low), high.max(around.high));
+                all = all.union(around::<L>(packet, u16::MAX));
             }
             let source = Source::Point(self.light);
-            let ground = Ground::around(&source, low, high, 10.0);
+            let ground = Ground::around(&source, all.low, all.high, 10.0);
             let mut planes = Planes::EMPTY;
             planes.set(&ground, &clusters.all()[0]);
-            let (mut middles, mut halves) = ([Row::ZERO; 3], [Row::ZERO; 3]);
-            for (place, packet) in packets.iter_mut().enumerate() {
+            let mut around_each = Vec::new();
+            for packet in &mut packets {
                 for (row, centre) in packet.iter_mut().zip(ground.centre.to_array()) {
                     for value in &mut row.0 {
                         *value -= centre;
                     }
                 }
-                let around = around::<L>(packet, u16::MAX);
-                let (middle, half) = (around.middle(), around.half());
-                for axis in 0..3 {
-                    middles[axis].0[place] = middle[axis];
-                    halves[axis].0[place] = half[axis];
-                }
+                around_each.push(around::<L>(packet, u16::MAX));
             }
+            let mut boxes = Boxes::NONE;
+            boxes.set(&around_each);
             let shadow = Shadow::<L::Sixteen>::of(&planes, 0, 0);
             let mut casts = Vec::new();
             for packet in &packets {
@@ -150,7 +169,7 @@ mod tests {
             let judged = if shadow.unsided {
                 Judged { touched: u16::MAX, covered: 0 }
             } else {
-                shadow.judge(&middles, &halves)
+                shadow.judge(&boxes)
             };
             (judged, casts)
         }

@@ -300,7 +300,7 @@ impl Walker {
             }
             return;
         }
-        let Judged { touched, covered } = shadow.judge(&self.bundle.middles, &self.bundle.halves);
+        let Judged { touched, covered } = shadow.judge(&self.bundle.beside);
         let mut touched = touched >> first & (u16::MAX >> (PACKETS - (last - first)));
         while touched != 0 {
             let packet = first + touched.trailing_zeros() as usize;
