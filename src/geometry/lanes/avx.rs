@@ -91,6 +91,11 @@ where
         Self(unsafe { _mm256_mul_ps(self.0, other.0) })
     }
     #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_div_ps(self.0, other.0) })
+    }
+    #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm256_fmadd_ps(self.0, b.0, c.0) })
@@ -205,6 +210,11 @@ impl Sixteen for Zmm {
     fn mul(self, other: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm512_mul_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_div_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {

@@ -93,6 +93,8 @@ pub trait Lanes: Copy {
     fn sub(self, other: Self) -> Self;
     /// Product, rounded.
     fn mul(self, other: Self) -> Self;
+    /// Quotient, rounded.
+    fn div(self, other: Self) -> Self;
     /// `self·b + c`: rounded once where the arithmetic is fused, twice elsewhere.
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// `self·b − c`, likewise.

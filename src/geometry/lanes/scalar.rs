@@ -57,6 +57,10 @@ impl<const FUSED: bool, const RCP14: bool> Lanes for Scalar<FUSED, RCP14> {
         Self(self.0 * other.0)
     }
     #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self(self.0 / other.0)
+    }
+    #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         if FUSED { Self(self.0.mul_add(b.0, c.0)) } else { Self(self.0 * b.0 + c.0) }
     }

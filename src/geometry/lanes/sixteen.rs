@@ -16,6 +16,8 @@ pub trait Sixteen: Copy {
     fn sub(self, other: Self) -> Self;
     /// Product, rounded.
     fn mul(self, other: Self) -> Self;
+    /// Quotient, rounded.
+    fn div(self, other: Self) -> Self;
     /// `self·b + c`: rounded once where the arithmetic is fused, twice elsewhere.
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// Sign bit cleared.
@@ -87,6 +89,13 @@ impl<L: Lanes, const N: usize> Sixteen for Several<L, N> {
     fn mul(mut self, other: Self) -> Self {
         for (a, b) in self.0.iter_mut().zip(other.0) {
             *a = a.mul(b);
+        }
+        self
+    }
+    #[inline(always)]
+    fn div(mut self, other: Self) -> Self {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a = a.div(b);
         }
         self
     }

@@ -81,6 +81,11 @@ impl Lanes for Sse {
         Self(unsafe { _mm_mul_ps(self.0, other.0) })
     }
     #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm_div_ps(self.0, other.0) })
+    }
+    #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         self.mul(b).add(c)
     }

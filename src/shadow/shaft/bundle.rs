@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::cast::Boxes;
 use super::columns::{Columns, Row, around};
 use super::planes::Ground;
+use super::view::{Perspective, View};
 use crate::geometry::Ray;
 use crate::geometry::lanes::{Lanes, Sixteen, splat, sub};
 use crate::scene::Light;
@@ -150,8 +151,15 @@ pub(super) struct Bundle {
     pub ground: Option<Ground>,
     /// Relative to the centre too.
     pub boxes: [OriginBox; 2 * PACKETS],
-    /// Those of the packets, side by side.
-    pub beside: Boxes,
+    /// Of queries that are sorted: how their light sees them, and how large the box of all is.
+    sorted: Option<(Perspective, f32)>,
+    /// How it sees the parts.
+    views: [View; 2 * PACKETS],
+    /// The bases of the parts' rays: of queries that are sorted, as far as they are known; of others, the boxes.
+    pub bases: [OriginBox; 2 * PACKETS],
+    /// Bases and boxes of the packets, side by side.
+    beside: [Boxes; 2],
+    is_beside_known: bool,
     /// A bit a query that is a ray to the light.
     pub asked: [u16; PACKETS],
     /// A bit a query of these that nothing blocks so far.
@@ -168,7 +176,11 @@ impl Bundle {
             origins: [[Row::ZERO; 3]; PACKETS],
             ground: None,
             boxes: [OriginBox::EMPTY; 2 * PACKETS],
-            beside: Boxes::NONE,
+            sorted: None,
+            views: [View::EMPTY; 2 * PACKETS],
+            bases: [OriginBox::EMPTY; 2 * PACKETS],
+            beside: [Boxes::NONE; 2],
+            is_beside_known: false,
             asked: [0; PACKETS],
             open: [0; PACKETS],
             open_packets: 0,
@@ -230,8 +242,15 @@ impl Bundle {
         if !MAGNITUDES.contains(&self.largest) {
             return None;
         }
-        let known = self.ground.filter(|ground| ground.holds(low, high));
-        let ground = known.unwrap_or_else(|| Ground::around(source, low, high, self.largest));
+        let all = match queries.places {
+            Places::Row { .. } => {
+                self.sorted = None;
+                self.boxes[1]
+            }
+            Places::These(_) => self.look::<L>(source, packets),
+        };
+        let known = self.ground.filter(|ground| ground.holds(&all));
+        let ground = known.unwrap_or_else(|| Ground::around(source, &all, self.largest));
         self.ground = Some(ground);
         let centre = ground.centre;
         for rows in &mut self.origins[..packets] {
@@ -243,8 +262,59 @@ impl Bundle {
             around.low -= centre;
             around.high -= centre;
         }
-        self.beside.set(&self.boxes[PACKETS..]);
+        self.is_beside_known = false;
+        if self.sorted.is_none() {
+            self.bases = self.boxes;
+        }
         Some(ground)
+    }
+
+    /// Looks at queries that are sorted as their light does. Gives a box around their origins and all bases.
+    #[inline(always)]
+    fn look<L: Lanes>(&mut self, source: &Source, packets: usize) -> OriginBox {
+        let around = self.boxes[1];
+        let perspective = Perspective::new(source, around.middle());
+        self.views = [View::EMPTY; 2 * PACKETS];
+        for packet in 0..packets {
+            self.views[PACKETS + packet] = perspective.view::<L::Sixteen>(&self.origins[packet]);
+        }
+        for parent in (1..PACKETS).rev() {
+            self.views[parent] = self.views[2 * parent].union(self.views[2 * parent + 1]);
+        }
+        let reach = (around.high - around.low).max_element();
+        // The base of a part is in the box of all and their base.
+        let base = perspective.base(&self.views[1], Vec3::ZERO, reach);
+        self.sorted = base.map(|_| (perspective, reach));
+        base.map_or(around, |base| base.union(around))
+    }
+
+    /// Makes sure that the base of a part's rays is known.
+    #[inline(always)]
+    pub fn know_base(&mut self, part: usize, centre: Vec3) {
+        if let Some((perspective, reach)) = self.sorted {
+            let base = perspective.base(&self.views[part], centre, reach);
+            self.bases[part] = base.unwrap_or(self.boxes[part]);
+        }
+    }
+
+    /// Bases and boxes of the packets, side by side.
+    #[inline(always)]
+    pub fn beside(&mut self, centre: Vec3) -> &[Boxes; 2] {
+        if !self.is_beside_known {
+            self.know_beside(centre);
+        }
+        &self.beside
+    }
+
+    // Not inline: what is once a bundle should not push what is once a triangle out of registers.
+    #[inline(never)]
+    fn know_beside(&mut self, centre: Vec3) {
+        for part in PACKETS..2 * PACKETS {
+            self.know_base(part, centre);
+        }
+        self.beside[0].set(&self.bases[PACKETS..]);
+        self.beside[1].set(&self.boxes[PACKETS..]);
+        self.is_beside_known = true;
     }
 
     /// Whether the origins do not stay together: packets are hardly smaller than the bundle, and far larger

@@ -5,7 +5,7 @@
 
 use super::bundle::OriginBox;
 use super::columns::Row;
-use super::planes::Planes;
+use super::planes::{OWN, Planes};
 use crate::geometry::TriangleId;
 use crate::geometry::lanes::Sixteen;
 
@@ -22,6 +22,7 @@ pub(super) struct Shadow<S> {
 }
 
 /// Boxes of sixteen packets, side by side.
+#[derive(Clone, Copy)]
 pub(super) struct Boxes {
     middles: [Row; 3],
     halves: [Row; 3],
@@ -78,11 +79,12 @@ impl<S: Sixteen> Shadow<S> {
     /// A plane's value in a box is that in the middle, and half of the box times the normal's magnitudes more or less. What
     /// rounding there errs by is within the bound that the plane was divided by, as it is for an origin.
     #[inline(always)]
-    pub fn judge(&self, boxes: &Boxes) -> Judged {
-        let [x, y, z] = load::<S>(&boxes.middles);
-        let [half_x, half_y, half_z] = load::<S>(&boxes.halves);
+    pub fn judge(&self, [bases, boxes]: &[Boxes; 2]) -> Judged {
         let (mut lowest, mut highest) = (S::splat(f32::INFINITY), S::splat(f32::INFINITY));
-        for [nx, ny, nz, value] in self.planes {
+        for (plane, [nx, ny, nz, value]) in self.planes.into_iter().enumerate() {
+            let boxes = if plane == OWN { boxes } else { bases };
+            let [x, y, z] = load::<S>(&boxes.middles);
+            let [half_x, half_y, half_z] = load::<S>(&boxes.halves);
             let middle = nx.mul_add(x, ny.mul_add(y, nz.mul_add(z, value)));
             let reach = nx.abs().mul_add(half_x, ny.abs().mul_add(half_y, nz.abs().mul(half_z)));
             lowest = lowest.min(middle.sub(reach));
@@ -147,9 +149,9 @@ mod tests {
                 all = all.union(around::<L>(packet, u16::MAX));
             }
             let source = Source::Point(self.light);
-            let ground = Ground::around(&source, all.low, all.high, 10.0);
+            let ground = Ground::around(&source, &all, 10.0);
             let mut planes = Planes::EMPTY;
-            planes.set(&ground, &clusters.all()[0]);
+            planes.set::<L>(&ground, &clusters.all()[0]);
             let mut around_each = Vec::new();
             for packet in &mut packets {
                 for (row, centre) in packet.iter_mut().zip(ground.centre.to_array()) {
@@ -169,7 +171,7 @@ mod tests {
             let judged = if shadow.unsided {
                 Judged { touched: u16::MAX, covered: 0 }
             } else {
-                shadow.judge(&boxes)
+                shadow.judge(&[boxes, boxes])
             };
             (judged, casts)
         }

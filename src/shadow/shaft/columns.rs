@@ -39,7 +39,7 @@ impl Columns {
         mean_extent(&self.boxes[packets.clone()], &self.asked[packets])
     }
 
-    /// How large packets would be if all were sorted by place: if origins lay all over the largest side of their box.
+    /// How large packets would be if all were sorted: if origins lay all over the largest side of their box.
     pub fn extent_if_sorted(&self) -> f32 {
         let all = self.boxes.iter().copied().fold(OriginBox::EMPTY, OriginBox::union);
         let Vec3 { x, y, z } = (all.high - all.low).max(Vec3::ZERO);

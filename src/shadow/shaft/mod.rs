@@ -7,8 +7,8 @@
 //! more than few.
 //!
 //! Wins where neighbouring queries start near each other, the more samples the better. Bundles that do not stay together,
-//! as those that mirrors see, are put together anew by place (`order`); where that does not help, parts of a bundle go
-//! on by themselves, in the end ray by ray.
+//! as those that mirrors see, are put together anew by the directions in which the light sees them (`order`, `view`); where
+//! that does not help, parts of a bundle go on by themselves, in the end ray by ray.
 //!
 //! With a light buffer behind it, bundles that do not stay together are left to that: `shaft+light-buffer`.
 //!
@@ -25,13 +25,14 @@ mod frustum;
 mod order;
 mod planes;
 mod rays;
+mod view;
 mod walk;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use bundle::{BUNDLE, Chosen, PACKET, Places, Source};
 use columns::Read;
-use order::SortByPlace;
+use order::SortByDirection;
 use walk::{Around, Walker};
 
 use super::stock::Stock;
@@ -40,7 +41,7 @@ use crate::geometry::Triangles;
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally};
 
-/// Bundles whose packets are larger than so many clusters are put together anew, by place,
+/// Bundles whose packets are larger than so many clusters are put together anew, by direction,
 /// unless packets that are put together so are expected to be as large.
 const APART: f32 = 0.3;
 
@@ -128,7 +129,7 @@ impl Shafts {
             }
         }
         if !order.packets.is_empty() {
-            self.arithmetic.run(SortByPlace { order: &mut order, columns: &columns });
+            self.arithmetic.run(SortByDirection { order: &mut order, columns: &columns, source });
             for places in order.places.chunks(BUNDLE) {
                 walk(Places::These(places), self.leaves_spread);
             }

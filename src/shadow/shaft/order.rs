@@ -1,18 +1,18 @@
-//! Queries in the order of where they start: along a Morton curve.
+//! Queries in the order of the directions in which their light sees them: along a Morton curve.
 //!
 //! What a mirror or a curved surface sees next lies all over the scene; sorted, neighbours in the order are
-//! neighbours in space again, and shafts are thin. The box of all is halved along its longest side, the half likewise, and so
-//! on: so a flat region is cut into as many cells as a cube. Queries that start in one cell keep their order.
+//! next to each other as the light sees them, and their shafts are thin. Two that are in line share all of the nearer one's way:
+//! so it is directions that count (`view`), not places. The rectangle of all is halved along its longer side, the half likewise, and so
+//! on: so a narrow one is cut into as many cells as a square. Queries in one cell keep their order.
 //!
 //! Morton: A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing. IBM, 1966.
 
-use glam::Vec3;
-
-use super::bundle::{OriginBox, PACKET};
+use super::bundle::{OriginBox, PACKET, Source};
 use super::columns::{Columns, Row};
-use crate::geometry::lanes::{Lanes, LanesJob};
+use super::view::Perspective;
+use crate::geometry::lanes::{Lanes, LanesJob, Sixteen};
 
-/// So often is the box of all halved: a bit of a key each.
+/// So often is the rectangle of all halved: a bit of a key each.
 const BITS: usize = 13;
 
 /// Cells, so many that the counts stay in the nearest cache.
@@ -25,37 +25,55 @@ pub(super) struct Order {
     pub packets: Vec<u32>,
     /// Places in order.
     pub places: Vec<u32>,
-    /// Cells of the queries of these packets.
+    /// Directions of the queries of these packets, by axis.
+    seen: Vec<[Row; 2]>,
+    /// And their cells.
     cells: Vec<[u16; PACKET]>,
     /// Of each cell, how many queries it has; then, where the next one goes.
     counts: Vec<u32>,
 }
 
-/// Sorts the queries of packets by where they start; those that are not asked are left out.
-pub(super) struct SortByPlace<'a> {
+/// Sorts the queries of packets by where their light sees them; those that are not asked are left out.
+pub(super) struct SortByDirection<'a> {
     pub order: &'a mut Order,
     pub columns: &'a Columns,
+    pub source: &'a Source,
 }
 
-impl LanesJob for SortByPlace<'_> {
+impl LanesJob for SortByDirection<'_> {
     type Answer = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Order { packets, places, cells, counts } = self.order;
+        let Order { packets, places, seen, cells, counts } = self.order;
         let Columns { origins, asked, boxes } = self.columns;
         let mut all = OriginBox::EMPTY;
         for &packet in &*packets {
             all = all.union(boxes[packet as usize]);
         }
-        let curve = Curve::through(all.low, all.high);
+        let perspective = Perspective::new(self.source, all.middle());
+        seen.resize(packets.len(), [Row::ZERO; 2]);
+        let (mut low, mut high) =
+            ([L::Sixteen::splat(f32::INFINITY); 2], [L::Sixteen::splat(f32::NEG_INFINITY); 2]);
+        for (seen, &packet) in seen.iter_mut().zip(&*packets) {
+            let directions = perspective.unfold::<L::Sixteen>(&origins[packet as usize]);
+            for (side, values) in directions.into_iter().enumerate() {
+                if asked[packet as usize] != 0 {
+                    (low[side], high[side]) = (low[side].min(values), high[side].max(values));
+                }
+                values.store(&mut seen[side].0);
+            }
+        }
+        let low = [low[0].least(), low[1].least()];
+        let high = [high[0].greatest(), high[1].greatest()];
+        let curve = Curve::through(low, high);
         cells.resize(packets.len(), [0; PACKET]);
         counts.clear();
         counts.resize(CELLS, 0);
         let counts: &mut [u32; CELLS] = counts.as_mut_slice().try_into().expect("so many cells");
         let mut count = 0;
-        for (cells, &packet) in cells.iter_mut().zip(&*packets) {
-            *cells = curve.cells(&origins[packet as usize]);
+        for ((cells, &packet), seen) in cells.iter_mut().zip(&*packets).zip(&*seen) {
+            *cells = curve.cells(seen);
             each(asked[packet as usize], |lane| counts[usize::from(cells[lane]) % CELLS] += 1);
             count += asked[packet as usize].count_ones() as usize;
         }
@@ -88,24 +106,24 @@ fn each(bits: u16, mut act: impl FnMut(usize)) {
     }
 }
 
-/// How a box is cut into cells, and in which order they come.
+/// How a rectangle is cut into cells, and in which order they come.
 struct Curve {
-    low: Vec3,
+    low: [f32; 2],
     /// Cells for a unit of way, by axis.
-    scale: Vec3,
+    scale: [f32; 2],
     /// Cells along each axis.
-    cells: [u32; 3],
+    cells: [u32; 2],
     /// Of each bit of a key, the highest first: its axis, and which bit of the cell's place there it is.
     bits: [(usize, u32); BITS],
 }
 
 impl Curve {
-    fn through(low: Vec3, high: Vec3) -> Self {
-        let mut size = high - low;
+    fn through(low: [f32; 2], high: [f32; 2]) -> Self {
+        let mut size = [high[0] - low[0], high[1] - low[1]];
         let mut axes = [0; BITS];
-        let mut counts = [0; 3];
+        let mut counts = [0; 2];
         for axis in &mut axes {
-            *axis = size.max_position();
+            *axis = usize::from(size[1] > size[0]);
             size[*axis] *= 0.5;
             counts[*axis] += 1;
         }
@@ -116,8 +134,8 @@ impl Curve {
             *bit = (axis, left[axis]);
         }
         let cells = counts.map(|count| 1 << count);
-        let mut scale = Vec3::ZERO;
-        for axis in 0..3 {
+        let mut scale = [0.0; 2];
+        for axis in 0..2 {
             let extent = high[axis] - low[axis];
             scale[axis] = if extent > 0.0 { cells[axis] as f32 / extent } else { 0.0 };
         }
@@ -126,11 +144,11 @@ impl Curve {
 
     /// The cells of a packet.
     #[inline(always)]
-    fn cells(&self, origins: &[Row; 3]) -> [u16; PACKET] {
-        let mut places = [[0u32; PACKET]; 3];
+    fn cells(&self, seen: &[Row; 2]) -> [u16; PACKET] {
+        let mut places = [[0u32; PACKET]; 2];
         for (axis, places) in places.iter_mut().enumerate() {
             let last = (self.cells[axis] - 1) as f32;
-            for (place, coordinate) in places.iter_mut().zip(origins[axis].0) {
+            for (place, coordinate) in places.iter_mut().zip(seen[axis].0) {
                 let whole = (coordinate - self.low[axis]) * self.scale[axis];
                 let whole = if whole < last { whole } else { last };
                 *place = (whole + WHOLE).to_bits();
@@ -156,6 +174,8 @@ const WHOLE: f32 = (1 << 23) as f32;
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::super::bundle::Source;
     use super::super::columns::Read;
     use super::*;
@@ -171,13 +191,15 @@ mod tests {
         origins.map(query).collect()
     }
 
+    const SOURCE: Source = Source::Point(LIGHT);
+
     /// The places of queries in order, all packets sorted.
     fn sorted(arithmetic: Arithmetic, queries: &[ShadowQuery]) -> Vec<u32> {
         let mut columns = Columns::default();
-        arithmetic.run(Read { columns: &mut columns, source: &Source::Point(LIGHT), queries });
+        arithmetic.run(Read { columns: &mut columns, source: &SOURCE, queries });
         let packets = (0..columns.asked.len() as u32).collect();
         let mut order = Order { packets, ..Order::default() };
-        arithmetic.run(SortByPlace { order: &mut order, columns: &columns });
+        arithmetic.run(SortByDirection { order: &mut order, columns: &columns, source: &SOURCE });
         order.places
     }
 
@@ -186,19 +208,20 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_side_is_halved_first_and_flat_regions_are_cut_as_often() {
-        let curve = Curve::through(Vec3::ZERO, Vec3::new(5.0, 0.0, 2.0));
-        assert_eq!(curve.cells[1], 1, "nothing to halve");
-        assert_eq!(curve.cells[0] * curve.cells[2], CELLS as u32);
-        assert_eq!(curve.bits.map(|(axis, _)| axis)[..4], [0, 0, 2, 0]);
+    fn the_longer_side_is_halved_first_and_narrow_rectangles_are_cut_as_often() {
+        let curve = Curve::through([0.0, 0.0], [5.0, 2.0]);
+        assert_eq!(curve.cells[0] * curve.cells[1], CELLS as u32);
+        assert_eq!(curve.bits.map(|(axis, _)| axis)[..4], [0, 0, 1, 0]);
+        let line = Curve::through([0.0, 1.0], [0.5, 1.0]);
+        assert_eq!(line.cells, [CELLS as u32, 1], "nothing to halve");
     }
 
     #[test]
-    fn sorted_places_are_all_there_and_neighbours_in_order_are_neighbours_in_space() {
-        // 8 by 8 by 4 corners of a lattice, in an order that jumps.
+    fn sorted_places_are_all_there_and_neighbours_in_order_are_neighbours_to_the_light() {
+        // 16 by 16 places in each of 4 planes, in an order that jumps.
         let origin = |place: u32| {
-            let number = place * 77 % 256;
-            Vec3::new((number % 8) as f32, (number / 8 % 8) as f32, (number / 64) as f32)
+            let number = place * 77 % 1024;
+            Vec3::new((number % 16) as f32, (number / 16 % 16) as f32, -((number / 256) as f32))
         };
         let queries = queries((0..1000).map(origin));
         for arithmetic in available() {
@@ -206,14 +229,14 @@ mod tests {
             let mut all = places.clone();
             all.sort_unstable();
             assert_eq!(all, (0..1000).collect::<Vec<u32>>());
-            let away = |pair: &[u32]| origin(pair[0]).distance(origin(pair[1]));
-            let way: f32 = places.windows(2).map(away).sum();
-            // A step of two or three from one corner to the next; in the old order it was five.
-            assert!(way < 600.0, "{arithmetic:?}: {way}");
-            for pair in places.windows(2) {
-                let same = origin(pair[0]) == origin(pair[1]);
-                assert!(!same || pair[0] < pair[1], "those of one cell keep their order");
-            }
+            let seen = |place: u32| {
+                let away = origin(place) - LIGHT;
+                away / away.z.abs()
+            };
+            let apart = |pair: &[u32]| seen(pair[0]).distance(seen(pair[1]));
+            let mean = places.windows(2).map(apart).sum::<f32>() / 999.0;
+            // Places are 1/50 apart; in the old order, and along a curve through space, neighbours are ten and two times as far.
+            assert!(mean < 0.026, "{arithmetic:?}: {mean}");
         }
     }
 

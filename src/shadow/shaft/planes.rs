@@ -9,40 +9,41 @@
 //! have the sign of N·a (their sum with N·a says that the volumes agree: a×b + b×c + c×a = N). For a direction
 //! d the edges are (P − A)·((a−b)×d), the plane −N·(P − A), and the sign is that of N·d.
 //!
-//! **Rounding.** Constants are computed in f64, at the centre C of the ground, and origins are relative to C, p =
-//! fl(P − C). With u = 2⁻²⁴, h the ground's half box, and n the plane's normal, evaluation in f32 errs by at
-//! most 8u (|n|·h + |n·C + c|): six roundings of each product (that of p, of n, and four of the sum, unfused),
-//! five of the constant. The rays' direction is fl(L − P), off by ρ with |ρ| ≤ u|q|: that moves an
-//! edge's volume by q·((a−b)×ρ), at most 2u E |q|₁ |q|∞ with E the longest coordinate of an edge, and the end of the ray
-//! by N·ρ. What f64 itself loses is below 2⁻⁴⁶ of the terms.
+//! **Rounding.** All in f32, unfused at worst, with u = 2⁻²⁴. Origins are relative to the centre C of the ground, p = fl(P − C), |p| ≤ h.
+//! A plane's normal n is a cross product, of which X is the same of magnitudes; its inputs are differences, so it errs by at
+//! most 4u X. Its value at C is n·g, where g is the way to C from a point on the plane: that errs by 4u X·|g| + 4u |n|·|g|.
+//! Both are scaled, and evaluated at p or at the middle of a box: 7u |n|·h for the products (p or the middle 2u, the
+//! normal 1, product and sums 4), 4u |n·g| for the value. With w = |g| + h that is less than 4u (X·w + 1.75 |n|·w + |n·g|) in all.
+//! The rays' direction is fl(L − P), off by ρ with |ρ| ≤ u|q|: that moves an edge's volume by q·((a−b)×ρ), at most
+//! 2u E |q|₁ |q|∞ with E the longest coordinate of an edge, and the end of the ray by N·ρ. What underflows is below [`LEAST`].
 //!
 //! Each plane is divided by its bound: beyond 1 it is certain, below −1 too, and what lies between is open and
 //! left to the exact test.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use super::bundle::{OriginBox, Source};
-use crate::geometry::lanes::{self, Lanes};
+use crate::geometry::lanes::{self, Lanes, Vector};
 use crate::occlusion::{Cluster, WIDTH};
 
 /// u.
-const ROUNDING: f64 = 1.0 / (1u64 << 24) as f64;
+const ROUNDING: f32 = 1.0 / (1u32 << 24) as f32;
 
-/// What sums of products in f64 lose, generously.
-const DOUBLE: f64 = 1.0 / (1u64 << 46) as f64;
+/// 4u, and a little for what is of second order, and for the rounding of bounds themselves.
+const FOUR: f32 = 4.2 * ROUNDING;
 
-/// Nothing that is computed in f32 vanishes beside this: products underflow below 2⁻¹²⁶.
-const LEAST: f64 = 1e-30;
+/// Added to all bounds: products underflow below 2⁻¹²⁶.
+const LEAST: f32 = 1e-30;
+
+/// Corners that are farther away are left to the exact test: products of four such coordinates overflow.
+const FARTHEST: f32 = 1e12;
 
 /// Of the first bundle, so much larger is the ground for those after it: planes are kept for all of them. Error bounds
 /// grow by as much, and with them the few queries that are left to the exact test.
-const ROOM: f32 = 8.0;
+const ROOM: f32 = 4.0;
 
 /// Half the box of a bundle counts as at least this part of the largest coordinate.
 const LEAST_HALF: f32 = 1.0 / (1 << 24) as f32;
-
-/// A value of each of eight triangles.
-type Eight = [f64; WIDTH];
 
 /// Planes of edges, and the triangle's own.
 pub(super) const OWN: usize = 3;
@@ -69,96 +70,69 @@ pub(super) struct Ground {
 
 impl Ground {
     /// Ground for a bundle in this box, with room around it for the next ones.
-    pub fn around(source: &Source, low: Vec3, high: Vec3, largest: f32) -> Self {
+    pub fn around(source: &Source, bundle: &OriginBox, largest: f32) -> Self {
+        let OriginBox { low, high } = *bundle;
         let half = ROOM * (0.5 * high - 0.5 * low);
         // Origins that coincide must not make planes that are divided by nothing.
         let half = half.max(Vec3::splat(LEAST_HALF * largest));
         Self { source: *source, centre: 0.5 * low + 0.5 * high, half }
     }
 
-    /// Whether a box of origins is on it.
+    /// Whether a box is on it.
     #[inline(always)]
-    pub fn holds(&self, low: Vec3, high: Vec3) -> bool {
+    pub fn holds(&self, &OriginBox { low, high }: &OriginBox) -> bool {
         let reach = (low - self.centre).abs().max((high - self.centre).abs());
         reach.cmple(self.half).all()
     }
 }
 
+/// The cross product of magnitudes, all terms added.
 #[inline(always)]
-fn minus(a: &Eight, b: &Eight) -> Eight {
-    let mut result = [0.0; WIDTH];
-    for lane in 0..WIDTH {
-        result[lane] = a[lane] - b[lane];
-    }
-    result
+fn cross_of_magnitudes<L: Lanes>(a: Vector<L>, b: Vector<L>) -> Vector<L> {
+    let (a, b) = (magnitudes(a), magnitudes(b));
+    [
+        a[1].mul_add(b[2], a[2].mul(b[1])),
+        a[2].mul_add(b[0], a[0].mul(b[2])),
+        a[0].mul_add(b[1], a[1].mul(b[0])),
+    ]
+}
+
+/// |x|. Written out: closures would not be compiled with the instruction set of the caller.
+#[inline(always)]
+fn magnitudes<L: Lanes>([x, y, z]: Vector<L>) -> Vector<L> {
+    [x.abs(), y.abs(), z.abs()]
 }
 
 #[inline(always)]
-fn cross(a: &[Eight; 3], b: &[Eight; 3]) -> [Eight; 3] {
-    let mut result = [[0.0; WIDTH]; 3];
-    for (axis, result) in result.iter_mut().enumerate() {
-        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        for lane in 0..WIDTH {
-            result[lane] = a[i][lane] * b[j][lane] - a[j][lane] * b[i][lane];
+fn largest<L: Lanes>(vector: Vector<L>) -> L {
+    let [x, y, z] = magnitudes(vector);
+    x.max(y).max(z)
+}
+
+/// A plane while its bound is sought.
+#[derive(Clone, Copy)]
+struct Plane<L> {
+    normal: Vector<L>,
+    /// At the centre.
+    value: L,
+    /// How far it may err.
+    error: L,
+}
+
+impl<L: Lanes> Plane<L> {
+    /// Through a point, with the cross product of two vectors as its normal. `way` goes from the point to the centre.
+    #[inline(always)]
+    fn new(a: Vector<L>, b: Vector<L>, way: Vector<L>, half: Vector<L>) -> Self {
+        let normal = lanes::cross(a, b);
+        let value = lanes::dot(normal, way);
+        let reach = lanes::add(magnitudes(way), half);
+        let mut terms = cross_of_magnitudes(a, b);
+        for (terms, normal) in terms.iter_mut().zip(magnitudes(normal)) {
+            *terms = L::splat(1.75).mul_add(normal, *terms);
         }
+        let error = L::splat(FOUR).mul(lanes::dot(terms, reach).add(value.abs()));
+        Self { normal, value, error: error.add(L::splat(LEAST)) }
     }
-    result
-}
-
-/// Of each, the product with one vector; and that of the magnitudes.
-#[inline(always)]
-fn dot(a: &[Eight; 3], b: DVec3) -> Eight {
-    let mut result = [0.0; WIDTH];
-    for lane in 0..WIDTH {
-        result[lane] = a[0][lane] * b.x + a[1][lane] * b.y + a[2][lane] * b.z;
-    }
-    result
-}
-
-#[inline(always)]
-fn dot_each(a: &[Eight; 3], b: &[Eight; 3]) -> Eight {
-    let mut result = [0.0; WIDTH];
-    for lane in 0..WIDTH {
-        result[lane] = a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane];
-    }
-    result
-}
-
-#[inline(always)]
-fn dot_of_magnitudes(a: &[Eight; 3], b: DVec3) -> Eight {
-    let mut result = [0.0; WIDTH];
-    for lane in 0..WIDTH {
-        result[lane] = a[0][lane].abs() * b.x + a[1][lane].abs() * b.y + a[2][lane].abs() * b.z;
-    }
-    result
-}
-
-#[inline(always)]
-fn sum_of_magnitudes(a: &[Eight; 3]) -> Eight {
-    let mut result = [0.0; WIDTH];
-    for lane in 0..WIDTH {
-        result[lane] = a[0][lane].abs() + a[1][lane].abs() + a[2][lane].abs();
-    }
-    result
-}
-
-/// Corners relative to a point.
-#[inline(always)]
-fn relative(cluster: &Cluster, corner: usize, point: DVec3) -> [Eight; 3] {
-    let mut result = [[0.0; WIDTH]; 3];
-    let point = point.to_array();
-    for (axis, result) in result.iter_mut().enumerate() {
-        let values = &cluster.corner(corner)[axis];
-        for lane in 0..WIDTH {
-            result[lane] = f64::from(values[lane]) - point[axis];
-        }
-    }
-    result
-}
-
-#[inline(always)]
-fn between(a: &[Eight; 3], b: &[Eight; 3]) -> [Eight; 3] {
-    [minus(&b[0], &a[0]), minus(&b[1], &a[1]), minus(&b[2], &a[2])]
 }
 
 impl Planes {
@@ -167,121 +141,151 @@ impl Planes {
 
     /// The planes of the cluster's triangles.
     #[inline(always)]
-    pub fn set(&mut self, ground: &Ground, cluster: &Cluster) {
-        let Ground { source, centre, half } = *ground;
-        let (centre, half) = (centre.as_dvec3(), half.as_dvec3());
-        let (light, to_centre, span) = match source {
-            Source::Point(light) => {
-                let light = light.as_dvec3();
-                let to_centre = centre - light;
-                (light, to_centre, to_centre.abs() + half)
-            }
-            // Everything is relative to the centre then.
-            Source::Direction(_) => (centre, DVec3::ZERO, half),
-        };
-        let a = relative(cluster, 0, light);
-        let b = relative(cluster, 1, light);
-        let c = relative(cluster, 2, light);
-        let (ab, bc, ca) = (between(&a, &b), between(&b, &c), between(&c, &a));
-        let mut own = cross(&ca, &ab);
-        let mut size = [0f64; WIDTH];
-        for axis in 0..3 {
-            for lane in 0..WIDTH {
-                let longest =
-                    ab[axis][lane].abs().max(bc[axis][lane].abs()).max(ca[axis][lane].abs());
-                size[lane] = size[lane].max(longest);
-            }
+    pub fn set<L: Lanes>(&mut self, ground: &Ground, cluster: &Cluster) {
+        self.unsided = 0;
+        let mut first = 0;
+        while first < WIDTH {
+            self.set_some::<L>(ground, cluster, first);
+            first += L::COUNT;
         }
-        let own_size = sum_of_magnitudes(&own);
-        let [farness, _, _] = [sum_of_magnitudes(&a), sum_of_magnitudes(&b), sum_of_magnitudes(&c)];
+    }
 
-        // Normals and values of the edges; on which side the light is, and how certainly.
-        let edges;
-        let mut values = [[0.0; WIDTH]; 4];
-        let side;
-        let mut side_bound = [0.0; WIDTH];
-        // What an edge errs by besides rounding in f32.
-        let mut edge_error = [0.0; WIDTH];
-        let (total, most) = (span.element_sum(), span.max_element());
-        match source {
-            Source::Point(_) => {
-                edges = [cross(&a, &ab), cross(&b, &bc), cross(&c, &ca)];
-                for edge in 0..3 {
-                    values[edge] = dot(&edges[edge], to_centre);
+    /// Those of some triangles.
+    #[inline(always)]
+    fn set_some<L: Lanes>(&mut self, ground: &Ground, cluster: &Cluster, first: usize) {
+        let corners = [0, 1, 2];
+        let mut corners = corners.map(|_| [L::splat(0.0); 3]);
+        for (number, corner) in corners.iter_mut().enumerate() {
+            let [x, y, z] = cluster.corner(number);
+            *corner = [L::load(x, first), L::load(y, first), L::load(z, first)];
+        }
+        let [a, b, c] = corners;
+        let (ab, bc, ca) = (lanes::sub(b, a), lanes::sub(c, b), lanes::sub(a, c));
+        let size = largest(ab).max(largest(bc)).max(largest(ca));
+        let (centre, half) = (lanes::splat::<L>(ground.centre), lanes::splat::<L>(ground.half));
+        let own = Plane::new(ca, ab, lanes::sub(centre, a), half);
+        let own_terms = cross_of_magnitudes(ca, ab);
+
+        let (edges, side, mut side_error, farthest);
+        // Which way the triangle's own plane counts.
+        let turn;
+        match ground.source {
+            Source::Point(light) => {
+                let to_centre = ground.centre - light;
+                let light = lanes::splat::<L>(light);
+                let (a, b, c) = (lanes::sub(a, light), lanes::sub(b, light), lanes::sub(c, light));
+                let way = lanes::splat::<L>(to_centre);
+                let span = to_centre.abs() + ground.half;
+                let ray = 3.0 * ROUNDING * span.element_sum() * span.max_element();
+                let mut planes = [
+                    Plane::new(a, ab, way, half),
+                    Plane::new(b, bc, way, half),
+                    Plane::new(c, ca, way, half),
+                ];
+                for plane in &mut planes {
+                    plane.error = L::splat(ray).mul_add(size, plane.error);
                 }
-                side = dot_each(&own, &a);
-                for lane in 0..WIDTH {
-                    edge_error[lane] = 3.0 * ROUNDING * size[lane] * total * most
-                        + DOUBLE * size[lane] * (farness[lane] + 3.0 * size[lane]) * total;
-                    side_bound[lane] = 2.0 * ROUNDING * own_size[lane] * most
-                        + 2.0 * DOUBLE * size[lane] * size[lane] * farness[lane];
-                }
+                edges = planes;
+                side = lanes::dot(own.normal, a);
+                let [x, y, z] = magnitudes(own.normal);
+                let end = L::splat(2.2 * ROUNDING * span.max_element());
+                side_error = end.mul(x.add(y).add(z));
+                side_error = side_error.add(Self::side_error(own_terms, own.normal, a));
+                farthest = largest(a).max(size);
+                turn = L::splat(1.0);
             }
             Source::Direction(direction) => {
-                let direction = direction.as_dvec3();
-                let along = [[direction.x; WIDTH], [direction.y; WIDTH], [direction.z; WIDTH]];
+                let along = lanes::splat::<L>(direction);
                 edges = [
-                    cross(&between(&b, &a), &along),
-                    cross(&between(&c, &b), &along),
-                    cross(&between(&a, &c), &along),
+                    Plane::new(along, ab, lanes::sub(centre, a), half),
+                    Plane::new(along, bc, lanes::sub(centre, b), half),
+                    Plane::new(along, ca, lanes::sub(centre, c), half),
                 ];
-                let length = direction.abs().element_sum();
-                for (edge, corner) in [&a, &b, &c].into_iter().enumerate() {
-                    let value = dot_each(&edges[edge], corner);
-                    for lane in 0..WIDTH {
-                        values[edge][lane] = -value[lane];
-                    }
-                }
-                side = dot(&own, direction);
-                for lane in 0..WIDTH {
-                    edge_error[lane] =
-                        DOUBLE * size[lane] * length * (farness[lane] + 3.0 * size[lane] + total);
-                    side_bound[lane] = 2.0 * DOUBLE * size[lane] * size[lane] * length;
-                    for axis in &mut own {
-                        axis[lane] = -axis[lane];
-                    }
-                }
+                side = lanes::dot(own.normal, along);
+                side_error = Self::side_error(own_terms, own.normal, along);
+                farthest = largest(lanes::sub(a, centre)).max(size);
+                turn = L::splat(-1.0);
             }
         }
-        // The own plane's value at the centre: N·(C − A).
-        let height = dot_each(&own, &a);
-        let at_light = dot(&own, to_centre);
-        let mut own_error = [0.0; WIDTH];
-        self.unsided = 0;
-        for lane in 0..WIDTH {
-            values[OWN][lane] = at_light[lane] - height[lane];
-            own_error[lane] = 2.0 * DOUBLE * size[lane] * size[lane] * (farness[lane] + total);
-            let sided = side[lane].abs() > side_bound[lane] + LEAST;
-            self.unsided |= u32::from(!sided) << lane;
+        side_error = side_error.add(L::splat(LEAST));
+        let sided = side_error.less(side.abs());
+        self.unsided |= (!L::bits(sided) & (u32::MAX >> (32 - L::COUNT))) << first;
+        let zero = L::splat(0.0);
+        let own_factor = L::select(sided, turn, zero);
+        for (number, plane) in [edges[0], edges[1], edges[2], own].into_iter().enumerate() {
+            // Without a side the own plane says nothing, and the edges no more than their signs.
+            let one = if number == OWN { own_factor } else { L::splat(1.0) };
+            let factor = one.div(plane.error).flip_sign(side);
+            plane.value.mul(factor).store_to(&mut self.values[number], first);
+            for (scaled, normal) in self.normals[number].iter_mut().zip(plane.normal) {
+                normal.mul(factor).store_to(scaled, first);
+            }
         }
-        for (plane, normal) in [&edges[0], &edges[1], &edges[2], &own].into_iter().enumerate() {
-            let reach = dot_of_magnitudes(normal, half);
-            let error = if plane == OWN { &own_error } else { &edge_error };
-            for lane in 0..WIDTH {
-                let value = values[plane][lane];
-                let bound = 8.0 * ROUNDING * (reach[lane] + value.abs()) + error[lane] + LEAST;
-                let factor = if side[lane] < 0.0 { -1.0 } else { 1.0 } / bound;
-                // Without a side the own plane says nothing, and the edges no more than their signs.
-                let sided = side[lane].abs() > side_bound[lane] + LEAST;
-                let factor = if sided || plane != OWN { factor } else { 0.0 };
-                self.values[plane][lane] = (value * factor) as f32;
-                for (scaled, normal) in self.normals[plane].iter_mut().zip(normal) {
-                    scaled[lane] = (normal[lane] * factor) as f32;
-                }
+        let sound = L::bits(farthest.less(L::splat(FARTHEST)));
+        let unsound = !sound & (u32::MAX >> (32 - L::COUNT));
+        if unsound != 0 {
+            self.leave_open(unsound << first);
+        }
+    }
+
+    /// What the product of the own normal and a vector errs by.
+    #[inline(always)]
+    fn side_error<L: Lanes>(terms: Vector<L>, normal: Vector<L>, vector: Vector<L>) -> L {
+        let all = lanes::add(terms, magnitudes(normal));
+        L::splat(FOUR).mul(lanes::dot(all, magnitudes(vector)))
+    }
+
+    /// Planes of these triangles say nothing.
+    #[cold]
+    fn leave_open(&mut self, triangles: u32) {
+        self.unsided |= triangles;
+        for lane in (0..WIDTH).filter(|lane| triangles & (1 << lane) != 0) {
+            for plane in 0..4 {
+                self.values[plane][lane] = 0.0;
+                self.normals[plane].iter_mut().for_each(|axis| axis[lane] = 0.0);
             }
         }
     }
 
+    /// Of the triangles, those that certainly block the ray from an origin, and those that the exact test must decide.
+    #[inline(always)]
+    pub fn cast_on_one<L: Lanes>(&self, origin: Vec3) -> (u32, u32) {
+        let origin = lanes::splat::<L>(origin);
+        let (mut certain, mut missed) = (0, 0);
+        let mut first = 0;
+        while first < WIDTH {
+            let mut least = L::splat(f32::INFINITY);
+            for plane in 0..4 {
+                let [x, y, z] = &self.normals[plane];
+                let mut value = L::load(&self.values[plane], first);
+                value = L::load(z, first).mul_add(origin[2], value);
+                value = L::load(y, first).mul_add(origin[1], value);
+                value = L::load(x, first).mul_add(origin[0], value);
+                least = least.min(value);
+            }
+            certain |= L::bits(L::splat(1.0).less(least)) << first;
+            missed |= L::bits(least.less(L::splat(-1.0))) << first;
+            first += L::COUNT;
+        }
+        let (certain, missed) = (certain & !self.unsided, missed & !self.unsided);
+        (certain, !(certain | missed) & ((1 << WIDTH) - 1))
+    }
+
     /// Triangles that may block a ray from the box: a bit each.
     #[inline(always)]
-    pub fn candidates<L: Lanes>(&self, origins: &OriginBox) -> u32 {
-        let middle = lanes::splat::<L>(0.5 * (origins.low + origins.high));
-        let half = lanes::splat::<L>(0.5 * (origins.high - origins.low));
+    pub fn candidates<L: Lanes>(&self, base: &OriginBox, origins: &OriginBox) -> u32 {
+        let middles = [lanes::splat::<L>(base.middle()), lanes::splat::<L>(origins.middle())];
+        let halves = [
+            lanes::splat::<L>(0.5 * (base.high - base.low)),
+            lanes::splat::<L>(0.5 * (origins.high - origins.low)),
+        ];
         let (least, slope) = (L::splat(1.001), L::splat(1e-5));
         let (mut beyond, mut before) = (0, 0);
         let mut first = 0;
         while first < WIDTH {
             for plane in 0..4 {
+                let which = usize::from(plane == OWN);
+                let (middle, half) = (middles[which], halves[which]);
                 let [x, y, z] = &self.normals[plane];
                 let normal = [L::load(x, first), L::load(y, first), L::load(z, first)];
                 let size = [normal[0].abs(), normal[1].abs(), normal[2].abs()];
@@ -299,3 +303,6 @@ impl Planes {
         !missed & ((1 << WIDTH) - 1)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,6 +5,8 @@
 //! apart, and its rays go on one by one. So rays that stay together share every step, and those that do not cost
 //! what they cost alone.
 
+use glam::Vec3;
+
 use super::bundle::{Bundle, Chosen, PACKET, PACKETS, Source, packets_of};
 use super::cast::{Cast, Judged, Shadow};
 use super::columns::Columns;
@@ -16,7 +18,7 @@ use crate::exact::{Exact, certified};
 use crate::geometry::intersect::RayLanes;
 use crate::geometry::lanes::{Lanes, Sixteen};
 use crate::geometry::{TriangleId, Triangles};
-use crate::occlusion::{Child, Clusters, Node, Tally, WIDTH};
+use crate::occlusion::{Child, Cluster, Clusters, Node, Tally, WIDTH};
 
 /// What is still to be visited: a part of the bundle, and a child.
 #[derive(Clone, Copy)]
@@ -129,7 +131,7 @@ impl Walker {
                     if index < PACKETS {
                         self.share(step, &found, node);
                     } else {
-                        self.part::<L>(step, &found, node, around, tally);
+                        self.part::<L>(step, &found, node, ground, around, tally);
                     }
                 }
                 Child::Cluster(cluster) => {
@@ -147,8 +149,9 @@ impl Walker {
             return;
         }
         self.known |= 1 << part;
-        let Bundle { boxes, largest, .. } = &self.bundle;
-        self.shafts[part] = Shaft::new(&ground.source, ground.centre, &boxes[part], *largest);
+        self.bundle.know_base(part, ground.centre);
+        let Bundle { bases, largest, .. } = &self.bundle;
+        self.shafts[part] = Shaft::new(&ground.source, ground.centre, &bases[part], *largest);
     }
 
     /// The rays of a packet.
@@ -185,6 +188,7 @@ impl Walker {
         step: Step,
         found: &Met,
         node: &Node,
+        ground: &Ground,
         around: &Around,
         tally: &mut Tally,
     ) {
@@ -204,7 +208,12 @@ impl Walker {
             if rays.count_ones() >= COMPANY {
                 self.steps.push(Step { met: rays, child, ..step });
             } else if rays != 0 {
-                self.go_alone::<L>(packet, rays, child, around, tally);
+                match child {
+                    Child::Cluster(number) => {
+                        self.test_few::<L>(packet, rays, number, ground, around, tally);
+                    }
+                    Child::Node(_) => self.go_alone::<L>(packet, rays, child, around, tally),
+                }
             }
         }
     }
@@ -253,6 +262,49 @@ impl Walker {
         }
     }
 
+    /// Tests the triangles of a cluster for few rays of a packet.
+    #[inline(always)]
+    fn test_few<L: Lanes>(
+        &mut self,
+        packet: usize,
+        mut rays: u16,
+        number: u32,
+        ground: &Ground,
+        around: &Around,
+        tally: &mut Tally,
+    ) {
+        tally.triangle_tests += WIDTH as u64 * u64::from(rays.count_ones());
+        let cluster = &around.clusters.all()[number as usize];
+        let kept = self.keep::<L>(number, cluster, ground);
+        let mut blocked = 0;
+        while rays != 0 {
+            let lane = rays.trailing_zeros() as usize;
+            rays &= rays - 1;
+            let [x, y, z] = &self.bundle.origins[packet];
+            let origin = Vec3::new(x.0[lane], y.0[lane], z.0[lane]);
+            let (certain, mut doubtful) = self.planes[kept].cast_on_one::<L>(origin);
+            let mut is_blocked = certain != 0;
+            while !is_blocked && doubtful != 0 {
+                let triangle = cluster.ids()[doubtful.trailing_zeros() as usize];
+                doubtful &= doubtful - 1;
+                is_blocked = self.settle(packet * PACKET + lane, triangle, around);
+            }
+            blocked |= u16::from(is_blocked) << lane;
+        }
+        self.bundle.block(packet, blocked);
+    }
+
+    /// Where the planes of a cluster are.
+    #[inline(always)]
+    fn keep<L: Lanes>(&mut self, number: u32, cluster: &Cluster, ground: &Ground) -> usize {
+        let kept = number as usize % KEPT;
+        if self.planes_of[kept] != number {
+            self.planes_of[kept] = number;
+            self.planes[kept].set::<L>(ground, cluster);
+        }
+        kept
+    }
+
     /// Tests the triangles of a cluster for a part of the bundle.
     #[inline(always)]
     fn test<L: Lanes>(
@@ -264,14 +316,10 @@ impl Walker {
         tally: &mut Tally,
     ) {
         let cluster = &around.clusters.all()[number as usize];
-        let kept = number as usize % KEPT;
-        if self.planes_of[kept] != number {
-            self.planes_of[kept] = number;
-            self.planes[kept].set(ground, cluster);
-        }
-
-        let mut candidates =
-            self.planes[kept].candidates::<L>(&self.bundle.boxes[usize::from(step.part)]);
+        let kept = self.keep::<L>(number, cluster, ground);
+        let part = usize::from(step.part);
+        let (base, origins) = (&self.bundle.bases[part], &self.bundle.boxes[part]);
+        let mut candidates = self.planes[kept].candidates::<L>(base, origins);
         while candidates != 0 {
             let lane = candidates.trailing_zeros() as usize;
             candidates &= candidates - 1;
@@ -279,7 +327,7 @@ impl Walker {
                 continue;
             }
             let shadow = Shadow::<L::Sixteen>::of(&self.planes[kept], lane, cluster.ids()[lane]);
-            self.cast(step, &shadow, around, tally);
+            self.cast(step, &shadow, ground, around, tally);
         }
     }
 
@@ -289,6 +337,7 @@ impl Walker {
         &mut self,
         step: Step,
         shadow: &Shadow<S>,
+        ground: &Ground,
         around: &Around,
         tally: &mut Tally,
     ) {
@@ -300,7 +349,7 @@ impl Walker {
             }
             return;
         }
-        let Judged { touched, covered } = shadow.judge(&self.bundle.beside);
+        let Judged { touched, covered } = shadow.judge(self.bundle.beside(ground.centre));
         let mut touched = touched >> first & (u16::MAX >> (PACKETS - (last - first)));
         while touched != 0 {
             let packet = first + touched.trailing_zeros() as usize;
