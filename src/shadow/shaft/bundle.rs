@@ -329,8 +329,7 @@ impl Bundle {
     /// Whether anything in a part is open.
     #[inline(always)]
     pub fn is_open(&self, part: usize) -> bool {
-        let (first, last) = packets_of(part);
-        self.open_packets >> first & (u16::MAX >> (PACKETS - (last - first))) != 0
+        self.open_packets & PACKETS_OF[part] != 0
     }
 
     /// Notes that queries of a packet are blocked.
@@ -380,9 +379,20 @@ pub(super) fn mean_extent(boxes: &[OriginBox], asked: &[u16]) -> f32 {
     if count > 0.0 { sum / count } else { 0.0 }
 }
 
-/// The packets of a part of the heap.
-#[inline(always)]
-pub(super) fn packets_of(part: usize) -> (usize, usize) {
+/// The packets of each part of the heap, a bit each.
+const PACKETS_OF: [u16; 2 * PACKETS] = {
+    let mut bits = [0; 2 * PACKETS];
+    let mut part = 1;
+    while part < 2 * PACKETS {
+        let (first, last) = packets_of(part);
+        bits[part] = u16::MAX >> (PACKETS - (last - first)) << first;
+        part += 1;
+    }
+    bits
+};
+
+/// The packets of a part of the heap, from one on and before another.
+pub(super) const fn packets_of(part: usize) -> (usize, usize) {
     let level = part.ilog2();
     let span = PACKETS >> level;
     let first = (part - (1 << level)) * span;

@@ -111,35 +111,26 @@ struct Curve {
     low: [f32; 2],
     /// Cells for a unit of way, by axis.
     scale: [f32; 2],
-    /// Cells along each axis.
-    cells: [u32; 2],
-    /// Of each bit of a key, the highest first: its axis, and which bit of the cell's place there it is.
-    bits: [(usize, u32); BITS],
+    /// Halvings of each axis. Those of the longer one that the other has not come first, then both in turns.
+    halvings: [u32; 2],
 }
 
 impl Curve {
     fn through(low: [f32; 2], high: [f32; 2]) -> Self {
         let mut size = [high[0] - low[0], high[1] - low[1]];
-        let mut axes = [0; BITS];
-        let mut counts = [0; 2];
-        for axis in &mut axes {
-            *axis = usize::from(size[1] > size[0]);
-            size[*axis] *= 0.5;
-            counts[*axis] += 1;
+        let mut halvings = [0; 2];
+        for _ in 0..BITS {
+            let longer = usize::from(size[1] > size[0]);
+            size[longer] *= 0.5;
+            halvings[longer] += 1;
         }
-        let mut left = counts;
-        let mut bits = [(0, 0); BITS];
-        for (bit, axis) in bits.iter_mut().zip(axes) {
-            left[axis] -= 1;
-            *bit = (axis, left[axis]);
-        }
-        let cells = counts.map(|count| 1 << count);
         let mut scale = [0.0; 2];
         for axis in 0..2 {
             let extent = high[axis] - low[axis];
-            scale[axis] = if extent > 0.0 { cells[axis] as f32 / extent } else { 0.0 };
+            let cells = (1 << halvings[axis]) as f32;
+            scale[axis] = if extent > 0.0 { cells / extent } else { 0.0 };
         }
-        Self { low, scale, cells, bits }
+        Self { low, scale, halvings }
     }
 
     /// The cells of a packet.
@@ -147,26 +138,32 @@ impl Curve {
     fn cells(&self, seen: &[Row; 2]) -> [u16; PACKET] {
         let mut places = [[0u32; PACKET]; 2];
         for (axis, places) in places.iter_mut().enumerate() {
-            let last = (self.cells[axis] - 1) as f32;
+            let last = ((1 << self.halvings[axis]) - 1) as f32;
             for (place, coordinate) in places.iter_mut().zip(seen[axis].0) {
                 let whole = (coordinate - self.low[axis]) * self.scale[axis];
                 let whole = if whole < last { whole } else { last };
-                *place = (whole + WHOLE).to_bits();
+                *place = (whole + WHOLE).to_bits() & ((1 << BITS) - 1);
             }
         }
-        let mut keys = [0u32; PACKET];
-        for (bit, (axis, place)) in self.bits.into_iter().enumerate() {
-            let shift = (BITS - 1 - bit) as u32;
-            for (key, places) in keys.iter_mut().zip(places[axis]) {
-                *key |= (places >> place & 1) << shift;
-            }
-        }
+        let longer = usize::from(self.halvings[1] > self.halvings[0]);
+        let both = self.halvings[1 - longer];
         let mut cells = [0; PACKET];
-        for (cell, key) in cells.iter_mut().zip(keys) {
-            *cell = key as u16;
+        for lane in 0..PACKET {
+            let (long, short) = (places[longer][lane], places[1 - longer][lane]);
+            let before = long >> both << (2 * both);
+            let in_turns = spread(long & ((1 << both) - 1)) << 1 | spread(short);
+            cells[lane] = (before | in_turns) as u16;
         }
         cells
     }
+}
+
+/// Bit `i` to bit `2 i`, of eight bits.
+#[inline(always)]
+fn spread(bits: u32) -> u32 {
+    let bits = (bits | bits << 4) & 0x0f0f;
+    let bits = (bits | bits << 2) & 0x3333;
+    (bits | bits << 1) & 0x5555
 }
 
 /// Added to a number below 2¹² it leaves the number, rounded, in the lowest bits of the sum.
@@ -209,11 +206,19 @@ mod tests {
 
     #[test]
     fn the_longer_side_is_halved_first_and_narrow_rectangles_are_cut_as_often() {
-        let curve = Curve::through([0.0, 0.0], [5.0, 2.0]);
-        assert_eq!(curve.cells[0] * curve.cells[1], CELLS as u32);
-        assert_eq!(curve.bits.map(|(axis, _)| axis)[..4], [0, 0, 1, 0]);
+        let curve = Curve::through([0.0, 0.0], [2.0, 9.0]);
+        assert_eq!(curve.halvings, [5, 8]);
+        let mut seen = [Row::ZERO; 2];
+        for (lane, [x, y]) in
+            [[0.9, 0.2], [0.1, 1.2], [0.1, 4.4], [2.0, 9.0]].into_iter().enumerate()
+        {
+            (seen[0].0[lane], seen[1].0[lane]) = (x, y);
+        }
+        let cells = curve.cells(&seen);
+        assert!(cells[0] < cells[1] && cells[1] < cells[2] && cells[2] < cells[3], "{cells:?}");
+        assert_eq!(cells[3], (CELLS - 1) as u16);
         let line = Curve::through([0.0, 1.0], [0.5, 1.0]);
-        assert_eq!(line.cells, [CELLS as u32, 1], "nothing to halve");
+        assert_eq!(line.halvings, [BITS as u32, 0], "nothing to halve");
     }
 
     #[test]
