@@ -69,9 +69,9 @@ pub(super) struct Unit<'a> {
     /// Radiance that each sample of the batch has gathered.
     gathered: Vec<Vec3>,
     done: Done,
-    /// What is asked, of which vertex, and the light that it is about.
-    queries: Vec<(ShadowQuery, u32, Illumination)>,
+    /// What is asked; of which vertex, and the light that it is about.
     asked: Vec<ShadowQuery>,
+    about: Vec<(u32, Illumination)>,
     answers: Vec<Answer>,
     /// What each answer cost, if that is to be shown.
     costs: Vec<u64>,
@@ -89,6 +89,8 @@ struct Seeing {
 /// A point of a surface that it saw.
 struct Vertex {
     surface: Surface,
+    /// Where its shadow rays start.
+    origin: Vec3,
     triangle: TriangleId,
     sample: u32,
     throughput: Vec3,
@@ -123,8 +125,8 @@ impl<'a> Unit<'a> {
             vertices: Vec::new(),
             gathered: Vec::new(),
             done: Done::default(),
-            queries: Vec::new(),
             asked: Vec::new(),
+            about: Vec::new(),
             answers: Vec::new(),
             costs: Vec::new(),
         }
@@ -230,8 +232,14 @@ impl<'a> Unit<'a> {
             let material = self.scene.material(hit.triangle);
             *gathered +=
                 seeing.throughput * (material.emission + self.scene.ambient * material.diffuse);
+            let surface = Surface::new(self.scene, &seeing.ray, &hit, self.offset);
+            let origin = match self.leaves_out_spawner {
+                true => surface.point.as_vec3(),
+                false => surface.origin_above(),
+            };
             vertices.push(Vertex {
-                surface: Surface::new(self.scene, &seeing.ray, &hit, self.offset),
+                surface,
+                origin,
                 triangle: hit.triangle,
                 sample: seeing.sample,
                 throughput: seeing.throughput,
@@ -243,7 +251,8 @@ impl<'a> Unit<'a> {
     /// Asks whether one light reaches the vertices, and adds its light where it does.
     fn ask(&mut self, light: usize, vertices: &[Vertex], pixel: impl Fn(u32) -> (usize, Place)) {
         let source = &self.scene.lights[light];
-        self.queries.clear();
+        self.asked.clear();
+        self.about.clear();
         for (index, vertex) in vertices.iter().enumerate() {
             let material = self.scene.material(vertex.triangle);
             if material.diffuse == Vec3::ZERO && material.highlight == Vec3::ZERO {
@@ -251,17 +260,11 @@ impl<'a> Unit<'a> {
             }
             let Some(illumination) = source.illuminate(vertex.surface.point) else { continue };
             if vertex.surface.faces(&illumination) {
-                let origin = match self.leaves_out_spawner {
-                    true => vertex.surface.point.as_vec3(),
-                    false => vertex.surface.origin_above(),
-                };
-                let ray = source.shadow_ray(origin);
-                let query = ShadowQuery { ray, path: vertex.path, spawner: vertex.triangle };
-                self.queries.push((query, index as u32, illumination));
+                let ray = source.shadow_ray(vertex.origin);
+                self.asked.push(ShadowQuery { ray, path: vertex.path, spawner: vertex.triangle });
+                self.about.push((index as u32, illumination));
             }
         }
-        self.asked.clear();
-        self.asked.extend(self.queries.iter().map(|(query, ..)| *query));
         self.answers.clear();
         self.answers.resize(self.asked.len(), Answer::default());
         let shown = self.settings.answers.is_some_and(|shown| shown.includes(light));
@@ -271,9 +274,9 @@ impl<'a> Unit<'a> {
         let transparent = self.scene.has_transparent();
         self.look_for_glass(light);
         let mut clear = self.clear.iter();
-        for (asked, (&(query, index, illumination), answer)) in
-            self.queries.iter().zip(&self.answers).enumerate()
-        {
+        let about = self.about.iter().zip(&self.answers);
+        for (asked, (&(index, illumination), answer)) in about.enumerate() {
+            let query = &self.asked[asked];
             let vertex = &vertices[index as usize];
             let (pixel_index, place) = pixel(vertex.sample);
             if shown {
@@ -289,6 +292,7 @@ impl<'a> Unit<'a> {
             if self.settings.record {
                 let light = light as u32;
                 let blocked = answer.blocked;
+                let query = *query;
                 self.done.queries.push(RecordedQuery { query, light, pixel: place, blocked });
             }
             if answer.blocked {
