@@ -43,7 +43,7 @@
 
 use super::certified;
 use crate::geometry::intersect::{Claims, RayLanes, TriangleTest};
-use crate::geometry::lanes::{Lanes, Vector, cross, dot, sub};
+use crate::geometry::lanes::{Lanes, Vector, all, cross, dot, largest, magnitudes, sub};
 use crate::geometry::{Ray, Triangle};
 
 /// The certified test: the filter, and [`certified::blocks`] for what it leaves open.
@@ -83,7 +83,7 @@ impl TriangleTest for Exact {
 
         let least = u.min(v).min(w);
         let misses = L::bits(least.less(negative(error)));
-        if misses == Self::all::<L>() {
+        if misses == all::<L>() {
             return Claims::default();
         }
 
@@ -103,19 +103,11 @@ impl TriangleTest for Exact {
         let outside = L::or(t.less(negative(start_error)), stop.less(negative(stop_error)));
         let certain = L::bits(L::and(error.less(least), within));
         let misses = misses | L::bits(L::and(error.less(slope), outside));
-        Claims { certain, open: Self::all::<L>() & !(certain | misses) }
+        Claims { certain, open: all::<L>() & !(certain | misses) }
     }
 
     fn settle(ray: &Ray, triangle: &Triangle, _: f64) -> bool {
         certified::blocks(ray, triangle)
-    }
-}
-
-impl Exact {
-    /// The bits of all lanes.
-    #[inline(always)]
-    fn all<L: Lanes>() -> u32 {
-        u32::MAX >> (32 - L::COUNT)
     }
 }
 
@@ -142,19 +134,6 @@ impl<L: Lanes> Weights<L> {
             underflow: underflow.mul_add(along, underflow),
         }
     }
-}
-
-/// The largest magnitude among the coordinates.
-#[inline(always)]
-fn largest<L: Lanes>(vector: Vector<L>) -> L {
-    let [x, y, z] = magnitudes(vector);
-    x.max(y).max(z)
-}
-
-/// |x|. Written out: `map` and closures would not be compiled with the instruction set of the caller.
-#[inline(always)]
-fn magnitudes<L: Lanes>([x, y, z]: Vector<L>) -> Vector<L> {
-    [x.abs(), y.abs(), z.abs()]
 }
 
 #[inline(always)]

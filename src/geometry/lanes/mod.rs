@@ -148,6 +148,26 @@ pub fn add<L: Lanes>(a: Vector<L>, b: Vector<L>) -> Vector<L> {
     [a[0].add(b[0]), a[1].add(b[1]), a[2].add(b[2])]
 }
 
+/// The magnitude of each coordinate.
+#[inline(always)]
+pub fn magnitudes<L: Lanes>([x, y, z]: Vector<L>) -> Vector<L> {
+    [x.abs(), y.abs(), z.abs()]
+}
+
+/// The largest magnitude among the coordinates.
+#[inline(always)]
+pub fn largest<L: Lanes>(vector: Vector<L>) -> L {
+    let [x, y, z] = magnitudes(vector);
+    x.max(y).max(z)
+}
+
+/// The bits of all lanes.
+#[inline(always)]
+#[must_use]
+pub fn all<L: Lanes>() -> u32 {
+    u32::MAX >> (32 - L::COUNT)
+}
+
 /// `a·b` in Embree's order: x, then y, then z innermost.
 #[inline(always)]
 pub fn dot<L: Lanes>(a: Vector<L>, b: Vector<L>) -> L {

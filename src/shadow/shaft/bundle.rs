@@ -151,8 +151,8 @@ pub(super) struct Bundle {
     pub ground: Option<Ground>,
     /// Relative to the centre too.
     pub boxes: [OriginBox; 2 * PACKETS],
-    /// Of queries that are sorted: how their light sees them, and how large the box of all is.
-    sorted: Option<(Perspective, f32)>,
+    /// Of queries that are sorted: how their light sees them.
+    sorted: Option<Perspective>,
     /// How it sees the parts.
     views: [View; 2 * PACKETS],
     /// The bases of the parts' rays: of queries that are sorted, as far as they are known; of others, the boxes.
@@ -273,7 +273,7 @@ impl Bundle {
     #[inline(always)]
     fn look<L: Lanes>(&mut self, source: &Source, packets: usize) -> OriginBox {
         let around = self.boxes[1];
-        let perspective = Perspective::new(source, around.middle());
+        let perspective = Perspective::new(source, &around);
         self.views = [View::EMPTY; 2 * PACKETS];
         for packet in 0..packets {
             self.views[PACKETS + packet] = perspective.view::<L::Sixteen>(&self.origins[packet]);
@@ -281,18 +281,17 @@ impl Bundle {
         for parent in (1..PACKETS).rev() {
             self.views[parent] = self.views[2 * parent].union(self.views[2 * parent + 1]);
         }
-        let reach = (around.high - around.low).max_element();
         // The base of a part is in the box of all and their base.
-        let base = perspective.base(&self.views[1], Vec3::ZERO, reach);
-        self.sorted = base.map(|_| (perspective, reach));
+        let base = perspective.base(&self.views[1], Vec3::ZERO);
+        self.sorted = base.map(|_| perspective);
         base.map_or(around, |base| base.union(around))
     }
 
     /// Makes sure that the base of a part's rays is known.
     #[inline(always)]
     pub fn know_base(&mut self, part: usize, centre: Vec3) {
-        if let Some((perspective, reach)) = self.sorted {
-            let base = perspective.base(&self.views[part], centre, reach);
+        if let Some(perspective) = &self.sorted {
+            let base = perspective.base(&self.views[part], centre);
             self.bases[part] = base.unwrap_or(self.boxes[part]);
         }
     }

@@ -51,7 +51,7 @@ impl LanesJob for SortByDirection<'_> {
         for &packet in &*packets {
             all = all.union(boxes[packet as usize]);
         }
-        let perspective = Perspective::new(self.source, all.middle());
+        let perspective = Perspective::new(self.source, &all);
         seen.resize(packets.len(), [Row::ZERO; 2]);
         let (mut low, mut high) =
             ([L::Sixteen::splat(f32::INFINITY); 2], [L::Sixteen::splat(f32::NEG_INFINITY); 2]);

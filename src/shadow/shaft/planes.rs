@@ -23,7 +23,7 @@
 use glam::Vec3;
 
 use super::bundle::{OriginBox, Source};
-use crate::geometry::lanes::{self, Lanes, Vector};
+use crate::geometry::lanes::{self, Lanes, Vector, largest, magnitudes};
 use crate::occlusion::{Cluster, WIDTH};
 
 /// u.
@@ -31,6 +31,9 @@ const ROUNDING: f32 = 1.0 / (1u32 << 24) as f32;
 
 /// 4u, and a little for what is of second order, and for the rounding of bounds themselves.
 const FOUR: f32 = 4.2 * ROUNDING;
+
+/// 7u of 4u: what the normal's own magnitude counts in a bound, for the products with an origin.
+const SEVEN_OF_FOUR: f32 = 1.75;
 
 /// Added to all bounds: products underflow below 2⁻¹²⁶.
 const LEAST: f32 = 1e-30;
@@ -97,22 +100,12 @@ fn cross_of_magnitudes<L: Lanes>(a: Vector<L>, b: Vector<L>) -> Vector<L> {
     ]
 }
 
-/// |x|. Written out: closures would not be compiled with the instruction set of the caller.
-#[inline(always)]
-fn magnitudes<L: Lanes>([x, y, z]: Vector<L>) -> Vector<L> {
-    [x.abs(), y.abs(), z.abs()]
-}
-
-#[inline(always)]
-fn largest<L: Lanes>(vector: Vector<L>) -> L {
-    let [x, y, z] = magnitudes(vector);
-    x.max(y).max(z)
-}
-
 /// A plane while its bound is sought.
 #[derive(Clone, Copy)]
 struct Plane<L> {
     normal: Vector<L>,
+    /// X: the cross product of magnitudes.
+    magnitudes: Vector<L>,
     /// At the centre.
     value: L,
     /// How far it may err.
@@ -126,12 +119,20 @@ impl<L: Lanes> Plane<L> {
         let normal = lanes::cross(a, b);
         let value = lanes::dot(normal, way);
         let reach = lanes::add(magnitudes(way), half);
-        let mut terms = cross_of_magnitudes(a, b);
+        let crossed = cross_of_magnitudes(a, b);
+        let mut terms = crossed;
         for (terms, normal) in terms.iter_mut().zip(magnitudes(normal)) {
-            *terms = L::splat(1.75).mul_add(normal, *terms);
+            *terms = L::splat(SEVEN_OF_FOUR).mul_add(normal, *terms);
         }
         let error = L::splat(FOUR).mul(lanes::dot(terms, reach).add(value.abs()));
-        Self { normal, value, error: error.add(L::splat(LEAST)) }
+        Self { normal, magnitudes: crossed, value, error: error.add(L::splat(LEAST)) }
+    }
+
+    /// How far the product of the normal and a vector may err.
+    #[inline(always)]
+    fn error_along(&self, vector: Vector<L>) -> L {
+        let terms = lanes::add(self.magnitudes, magnitudes(self.normal));
+        L::splat(FOUR).mul(lanes::dot(terms, magnitudes(vector)))
     }
 }
 
@@ -153,8 +154,7 @@ impl Planes {
     /// Those of some triangles.
     #[inline(always)]
     fn set_some<L: Lanes>(&mut self, ground: &Ground, cluster: &Cluster, first: usize) {
-        let corners = [0, 1, 2];
-        let mut corners = corners.map(|_| [L::splat(0.0); 3]);
+        let mut corners = [[L::splat(0.0); 3]; 3];
         for (number, corner) in corners.iter_mut().enumerate() {
             let [x, y, z] = cluster.corner(number);
             *corner = [L::load(x, first), L::load(y, first), L::load(z, first)];
@@ -164,7 +164,6 @@ impl Planes {
         let size = largest(ab).max(largest(bc)).max(largest(ca));
         let (centre, half) = (lanes::splat::<L>(ground.centre), lanes::splat::<L>(ground.half));
         let own = Plane::new(ca, ab, lanes::sub(centre, a), half);
-        let own_terms = cross_of_magnitudes(ca, ab);
 
         let (edges, side, mut side_error, farthest);
         // Which way the triangle's own plane counts.
@@ -190,7 +189,7 @@ impl Planes {
                 let [x, y, z] = magnitudes(own.normal);
                 let end = L::splat(2.2 * ROUNDING * span.max_element());
                 side_error = end.mul(x.add(y).add(z));
-                side_error = side_error.add(Self::side_error(own_terms, own.normal, a));
+                side_error = side_error.add(own.error_along(a));
                 farthest = largest(a).max(size);
                 turn = L::splat(1.0);
             }
@@ -202,14 +201,14 @@ impl Planes {
                     Plane::new(along, ca, lanes::sub(centre, c), half),
                 ];
                 side = lanes::dot(own.normal, along);
-                side_error = Self::side_error(own_terms, own.normal, along);
+                side_error = own.error_along(along);
                 farthest = largest(lanes::sub(a, centre)).max(size);
                 turn = L::splat(-1.0);
             }
         }
         side_error = side_error.add(L::splat(LEAST));
         let sided = side_error.less(side.abs());
-        self.unsided |= (!L::bits(sided) & (u32::MAX >> (32 - L::COUNT))) << first;
+        self.unsided |= (!L::bits(sided) & lanes::all::<L>()) << first;
         let zero = L::splat(0.0);
         let own_factor = L::select(sided, turn, zero);
         for (number, plane) in [edges[0], edges[1], edges[2], own].into_iter().enumerate() {
@@ -222,17 +221,10 @@ impl Planes {
             }
         }
         let sound = L::bits(farthest.less(L::splat(FARTHEST)));
-        let unsound = !sound & (u32::MAX >> (32 - L::COUNT));
+        let unsound = !sound & lanes::all::<L>();
         if unsound != 0 {
             self.leave_open(unsound << first);
         }
-    }
-
-    /// What the product of the own normal and a vector errs by.
-    #[inline(always)]
-    fn side_error<L: Lanes>(terms: Vector<L>, normal: Vector<L>, vector: Vector<L>) -> L {
-        let all = lanes::add(terms, magnitudes(normal));
-        L::splat(FOUR).mul(lanes::dot(all, magnitudes(vector)))
     }
 
     /// Planes of these triangles say nothing.

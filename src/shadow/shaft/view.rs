@@ -31,17 +31,19 @@ const PAD: f32 = 1.0 / (1 << 18) as f32;
 /// Far below all distances: a light sees itself nowhere, not as NaN.
 const NEAREST: f32 = 1e-30;
 
-/// How a light sees what lies around a place.
+/// How a light sees what lies in a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Perspective {
-    /// The light; for a direction, the place.
+    /// The light; for a direction, the middle of the box.
     eye: Vec3,
-    /// Two axes across, and that along which the place is farthest from the light.
+    /// Two axes across, and that along which the middle is farthest from the light.
     axes: [usize; 3],
     /// Which way depth grows along it.
     sign: f32,
     /// Towards a direction: how far rays go across on a unit of depth.
     slopes: Option<[f32; 2]>,
+    /// The longest side of the box that it was made for.
+    reach: f32,
 }
 
 /// A rectangle around what is seen, and the depth of what is farthest.
@@ -69,7 +71,9 @@ impl View {
 }
 
 impl Perspective {
-    pub fn new(source: &Source, place: Vec3) -> Self {
+    /// Of what lies in a box.
+    pub fn new(source: &Source, around: &OriginBox) -> Self {
+        let place = around.middle();
         let (eye, way) = match *source {
             Source::Point(light) => (light, place - light),
             Source::Direction(direction) => (place, -direction),
@@ -79,7 +83,8 @@ impl Perspective {
         let slope = |side: usize| way[axes[side]] / way[depth].abs();
         let is_parallel = matches!(source, Source::Direction(_));
         let slopes = is_parallel.then(|| [slope(0), slope(1)]);
-        Self { eye, axes, sign: 1f32.copysign(way[depth]), slopes }
+        let reach = (around.high - around.low).max_element();
+        Self { eye, axes, sign: 1f32.copysign(way[depth]), slopes, reach }
     }
 
     /// Of sixteen origins: across, and how deep.
@@ -129,10 +134,9 @@ impl Perspective {
         }
     }
 
-    /// The base of all rays of what is seen, relative to a centre; `None` if the light sees it too widely. `reach`: how far
-    /// from the place any origin is, for a direction.
+    /// The base of all rays of what is seen, relative to a centre; `None` if the light sees it too widely.
     #[inline(always)]
-    pub fn base(&self, view: &View, centre: Vec3, reach: f32) -> Option<OriginBox> {
+    pub fn base(&self, view: &View, centre: Vec3) -> Option<OriginBox> {
         let View { low, high, far } = *view;
         let to_eye = self.eye - centre;
         let away = to_eye.abs().max_element();
@@ -147,7 +151,7 @@ impl Perspective {
                 (far + pad, [0.0; 2], pad)
             }
             Some([a, b]) => {
-                let pad = PAD * (reach + away);
+                let pad = PAD * (self.reach + away);
                 (1.0, [(far + pad) * a, (far + pad) * b], pad)
             }
         };
@@ -218,12 +222,12 @@ mod tests {
         let origins: [Vec3; PACKET] = origins.try_into().unwrap();
         let least = origins.iter().fold(Vec3::INFINITY, |least, origin| least.min(*origin));
         let greatest = origins.iter().fold(Vec3::NEG_INFINITY, |most, origin| most.max(*origin));
-        let perspective = Perspective::new(source, 0.5 * (least + greatest));
-        let reach = (greatest - least).max_element();
+        let around = OriginBox { low: least, high: greatest };
+        let perspective = Perspective::new(source, &around);
         let mut seen = false;
         for arithmetic in available() {
             let (view, _) = arithmetic.run(Seen(&perspective, &rows(&origins)));
-            let Some(base) = perspective.base(&view, centre, reach) else { continue };
+            let Some(base) = perspective.base(&view, centre) else { continue };
             seen = true;
             let centre = centre.as_dvec3();
             let (low, high) = (centre + base.low.as_dvec3(), centre + base.high.as_dvec3());
@@ -279,7 +283,9 @@ mod tests {
         let light = Vec3::new(1.0, 2.0, 3.0);
         let ways = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z, Vec3::ONE];
         let origins = std::array::from_fn(|lane| light + 2.0 * *ways.get(lane).unwrap_or(&Vec3::X));
-        let perspective = Perspective::new(&Source::Point(light), light + Vec3::new(0.3, 5.0, 0.1));
+        let place = light + Vec3::new(0.3, 5.0, 0.1);
+        let there = OriginBox { low: place, high: place };
+        let perspective = Perspective::new(&Source::Point(light), &there);
         for arithmetic in available() {
             let (_, [x, y]) = arithmetic.run(Seen(&perspective, &rows(&origins)));
             for (lane, way) in ways.iter().enumerate() {
