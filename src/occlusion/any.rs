@@ -3,9 +3,9 @@
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-use super::engine::{Engine, Job, TestEach, admit};
+use super::engine::{Engine, Job, TestEach, TestEight, admit};
 use super::walk::walk_any;
-use super::{Cell, Occluder, Tally, Visit, VisitMany, Walk};
+use super::{Cell, Eight, Occluder, Tally, Visit, VisitMany, Walk};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
 use crate::geometry::lanes::{Kernel, Lanes};
 use crate::geometry::{Ray, TriangleId, Triangles};
@@ -132,27 +132,49 @@ impl<'a, T: TriangleTest, L: Lanes, const IN_PLACE: bool> AnyVisitor<'a, T, L, I
     ) -> Self {
         Self { triangles, ray, lanes: RayLanes::of::<T>(ray), tally, found, test: PhantomData }
     }
+
+    /// The test of some triangles, counted.
+    #[inline(always)]
+    fn test<'v>(
+        &'v mut self,
+        cell: Cell,
+        ids: &'v [TriangleId],
+    ) -> TestEach<
+        'v,
+        T,
+        L,
+        impl Fn(TriangleId) -> bool + use<'v, 'a, T, L, IN_PLACE>,
+        impl FnMut(TriangleId) -> ControlFlow<()> + use<'v, 'a, T, L, IN_PLACE>,
+    > {
+        let Self { triangles, ray, lanes, tally, found, .. } = self;
+        tally.cells += 1;
+        tally.triangle_tests += ids.len() as u64;
+        let opaque = triangles.opaque_count();
+        TestEach {
+            triangles,
+            ray,
+            lanes,
+            ids,
+            wanted: move |id| id < opaque,
+            hit: move |triangle| {
+                **found = Some(Occluder { triangle, cell });
+                ControlFlow::Break(())
+            },
+            test: PhantomData,
+        }
+    }
 }
 
 impl<T: TriangleTest, L: Lanes, const IN_PLACE: bool> Visit for AnyVisitor<'_, T, L, IN_PLACE> {
     #[inline(always)]
     fn visit(&mut self, cell: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
-        let Self { triangles, ray, lanes, tally, found, .. } = self;
-        tally.cells += 1;
-        let opaque = triangles.opaque_count();
-        tally.triangle_tests += ids.len() as u64;
-        let job = TestEach::<T, L, _, _> {
-            triangles,
-            ray,
-            lanes,
-            ids,
-            wanted: |id| id < opaque,
-            hit: |triangle| {
-                **found = Some(Occluder { triangle, cell });
-                ControlFlow::Break(())
-            },
-            test: PhantomData,
-        };
+        let job = self.test(cell, ids);
+        if IN_PLACE { job.run() } else { L::run(job) }
+    }
+
+    #[inline(always)]
+    fn visit_eight(&mut self, cell: Cell, ids: &[TriangleId], eight: &Eight) -> ControlFlow<()> {
+        let job = TestEight { eight, each: self.test(cell, ids) };
         if IN_PLACE { job.run() } else { L::run(job) }
     }
 

@@ -5,11 +5,12 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::any::{AnyOccluders, OccluderIn};
+use super::eight::{AT_ONCE, Eight};
 use super::nearest::NearestHit;
 use super::sparing::SparingOccluder;
 use super::walk::walk_any;
 use super::{Cell, LeftOut, Nearest, Occluder, Occlusion, Tally, Visit, Walk};
-use crate::geometry::intersect::{RayLanes, TriangleTest};
+use crate::geometry::intersect::{Claims, RayLanes, TriangleTest};
 use crate::geometry::lanes::{Arithmetic, Kernel, Lanes, LanesJob};
 use crate::geometry::{Ray, TriangleId, Triangles};
 
@@ -154,6 +155,35 @@ pub(super) struct TestEach<'a, T, L, Wanted, Hit> {
     pub test: PhantomData<T>,
 }
 
+impl<T, L, Wanted, Hit> TestEach<'_, T, L, Wanted, Hit>
+where
+    T: TriangleTest,
+    L: Lanes,
+    Wanted: Fn(TriangleId) -> bool,
+    Hit: FnMut(TriangleId) -> ControlFlow<()>,
+{
+    /// Goes through what is claimed of up to a vector full of triangles. Most are missed, and what a call needs
+    /// is not to be prepared for them.
+    #[cold]
+    #[inline(never)]
+    fn settle(&mut self, ids: &[TriangleId], claims: Claims) -> ControlFlow<()> {
+        let used = u32::MAX >> (32 - ids.len());
+        let mut candidates = (claims.certain | claims.open) & used;
+        while candidates != 0 {
+            let lane = candidates.trailing_zeros();
+            candidates &= candidates - 1;
+            let id = ids[lane as usize];
+            let certain = claims.certain & (1 << lane) != 0;
+            if (self.wanted)(id)
+                && (certain || T::settle(self.ray, &self.triangles.get(id), self.triangles.slack()))
+            {
+                (self.hit)(id)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
 impl<T, L, Wanted, Hit> Kernel for TestEach<'_, T, L, Wanted, Hit>
 where
     T: TriangleTest,
@@ -168,19 +198,43 @@ where
         for ids in self.ids.chunks(L::COUNT) {
             let claims = T::claims::<L>(self.lanes, &L::gather(self.triangles.corners(), ids));
             let used = u32::MAX >> (32 - ids.len());
-            let mut candidates = (claims.certain | claims.open) & used;
-            while candidates != 0 {
-                let lane = candidates.trailing_zeros();
-                candidates &= candidates - 1;
-                let id = ids[lane as usize];
-                let certain = claims.certain & (1 << lane) != 0;
-                if (self.wanted)(id)
-                    && (certain
-                        || T::settle(self.ray, &self.triangles.get(id), self.triangles.slack()))
-                {
-                    (self.hit)(id)?;
+            if (claims.certain | claims.open) & used != 0 {
+                self.settle(ids, claims)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// [`TestEach`] of up to eight triangles that are stored side by side.
+pub(super) struct TestEight<'a, T, L, Wanted, Hit> {
+    pub eight: &'a Eight,
+    pub each: TestEach<'a, T, L, Wanted, Hit>,
+}
+
+impl<T, L, Wanted, Hit> Kernel for TestEight<'_, T, L, Wanted, Hit>
+where
+    T: TriangleTest,
+    L: Lanes,
+    Wanted: Fn(TriangleId) -> bool,
+    Hit: FnMut(TriangleId) -> ControlFlow<()>,
+{
+    type Answer = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run(mut self) -> ControlFlow<()> {
+        let mut first = 0;
+        while first < AT_ONCE {
+            let claims = T::claims::<L>(self.each.lanes, &self.eight.load(first));
+            let claimed = claims.certain | claims.open;
+            if claimed != 0 {
+                let ids = self.each.ids;
+                let ids = &ids[first.min(ids.len())..(first + L::COUNT).min(ids.len())];
+                if !ids.is_empty() {
+                    self.each.settle(ids, claims)?;
                 }
             }
+            first += L::COUNT;
         }
         ControlFlow::Continue(())
     }

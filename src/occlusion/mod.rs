@@ -13,6 +13,7 @@ mod clip;
 mod clusters;
 mod culling_space;
 mod cwbvh;
+mod eight;
 #[cfg(feature = "embree")]
 mod embree;
 pub mod embree_bounds;
@@ -33,6 +34,7 @@ pub(crate) use clip::Clip;
 pub(crate) use clusters::{Child, Node};
 pub use clusters::{Cluster, Clusters, WIDTH};
 pub use cwbvh::Cwbvh;
+pub use eight::Eight;
 #[cfg(feature = "embree")]
 pub use embree::{Embree, EmbreeOptions, Isa, PacketWidth, Quality};
 pub use engine::Engine;

@@ -3,9 +3,9 @@
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-use super::engine::{Engine, Job, admit, test_each};
+use super::engine::{Engine, Job, TestEach, TestEight, admit};
 use super::walk::walk_any;
-use super::{Cell, Tally, Visit, Walk};
+use super::{Cell, Eight, Tally, Visit, Walk};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, Triangle, TriangleId, Triangles};
@@ -69,19 +69,29 @@ struct NearestVisitor<'a, T, L> {
     test: PhantomData<T>,
 }
 
-impl<T: TriangleTest, L: Lanes> Visit for NearestVisitor<'_, T, L> {
+impl<'a, T: TriangleTest, L: Lanes> NearestVisitor<'a, T, L> {
+    /// The test of some triangles, counted.
     #[inline(always)]
-    fn visit(&mut self, _: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
+    fn test<'v>(
+        &'v mut self,
+        ids: &'v [TriangleId],
+    ) -> TestEach<
+        'v,
+        T,
+        L,
+        impl Fn(TriangleId) -> bool + use<'v, 'a, T, L>,
+        impl FnMut(TriangleId) -> ControlFlow<()> + use<'v, 'a, T, L>,
+    > {
         let Self { triangles, ray, lanes, tally, best, .. } = self;
         tally.cells += 1;
-        test_each::<T, L>(
+        tally.triangle_tests += ids.len() as u64;
+        TestEach {
             triangles,
             ray,
             lanes,
             ids,
-            tally,
-            |_| true,
-            |triangle| {
+            wanted: |_| true,
+            hit: move |triangle| {
                 if let Some(t) = distance(ray, &triangles.get(triangle)) {
                     let nearer = best.is_none_or(|best| (t, triangle) < (best.t, best.triangle));
                     if nearer {
@@ -90,7 +100,21 @@ impl<T: TriangleTest, L: Lanes> Visit for NearestVisitor<'_, T, L> {
                 }
                 ControlFlow::Continue(())
             },
-        )
+            test: PhantomData,
+        }
+    }
+}
+
+impl<T: TriangleTest, L: Lanes> Visit for NearestVisitor<'_, T, L> {
+    #[inline(always)]
+    fn visit(&mut self, _: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
+        // A culler may have come here through a closure of its own: see `lanes`.
+        L::run(self.test(ids))
+    }
+
+    #[inline(always)]
+    fn visit_eight(&mut self, _: Cell, ids: &[TriangleId], eight: &Eight) -> ControlFlow<()> {
+        L::run(TestEight { eight, each: self.test(ids) })
     }
 
     #[inline(always)]

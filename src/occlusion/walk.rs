@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::Cell;
+use super::{Cell, Eight};
 use crate::geometry::lanes::{Kernel, Lanes};
 use crate::geometry::{Ray, TriangleId};
 
@@ -12,6 +12,12 @@ use crate::geometry::{Ray, TriangleId};
 pub trait Visit {
     /// Triangles that the ray might meet, and the cell they are (part) of. Break ends the walk.
     fn visit(&mut self, cell: Cell, triangles: &[TriangleId]) -> ControlFlow<()>;
+
+    /// The same of up to eight triangles whose corners the culler stores side by side.
+    #[inline(always)]
+    fn visit_eight(&mut self, cell: Cell, triangles: &[TriangleId], _: &Eight) -> ControlFlow<()> {
+        self.visit(cell, triangles)
+    }
 
     /// Nothing beyond this `t` is of interest any more.
     fn end(&self) -> f32;

@@ -2,7 +2,7 @@
 //!
 //! Embree decides by its own arithmetic: [`Test::Pluecker`](super::Test::Pluecker) stands for its robust
 //! mode, [`Test::Moller`](super::Test::Moller) for its default one. It shows no leaves, so the occluder's
-//! identity comes from an argument filter, and its *cell* is the voxel of a companion grid around the hit
+//! identity comes from an argument filter, and its *cell* is that of a companion grid, found by the hit
 //! point; that grid is built when a memory first needs it, and not otherwise. What a memory
 //! in front of Embree tests is the lower bound of Embree's own answer (`geometry::intersect::embree`), so
 //! that it never says "blocked" where Embree would not.
@@ -41,7 +41,7 @@ pub struct Embree {
     companion: Arc<OnceLock<Companion>>,
 }
 
-/// The grid whose voxels stand in for Embree's leaves.
+/// The grid whose cells stand in for Embree's leaves.
 struct Companion {
     grid: Arc<NestedGrid>,
     /// The grid with the lower bound of Embree's answer as its test.
@@ -99,8 +99,9 @@ impl Occlusion for Embree {
             return None;
         }
         let hit = self.scene.occluder(&Self::ray(ray, OPAQUE))?;
-        let cell = self.companion().grid.cell_at(ray.at(f64::from(hit.t)));
-        Some(Occluder { triangle: self.triangle(&hit), cell })
+        let triangle = self.triangle(&hit);
+        let cell = self.companion().grid.cell_with(triangle, ray.at(f64::from(hit.t)));
+        Some(Occluder { triangle, cell })
     }
 
     fn occluded(&self, ray: &Ray, tally: &mut Tally) -> bool {
@@ -144,7 +145,7 @@ impl Occlusion for Embree {
             Verdict::Accept
         });
         let (triangle, t) = found?;
-        let cell = self.companion().grid.cell_at(ray.at(f64::from(t)));
+        let cell = self.companion().grid.cell_with(triangle, ray.at(f64::from(t)));
         Some(Occluder { triangle, cell })
     }
 

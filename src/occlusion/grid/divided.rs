@@ -25,7 +25,7 @@ use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
 use crate::occlusion::brute::visit_all;
 use crate::occlusion::clip::Clip;
-use crate::occlusion::{Cell, Visit, Walk};
+use crate::occlusion::{Cell, Eight, Visit, Walk};
 
 /// A voxel with more triangles than this is divided.
 const CROWDED: usize = 16;
@@ -175,6 +175,12 @@ impl<V: Visit + ?Sized> Visit for Parts<'_, V> {
     #[inline(always)]
     fn visit(&mut self, _: Cell, triangles: &[TriangleId]) -> ControlFlow<()> {
         self.visited = self.visitor.visit(self.cell, triangles);
+        self.visited
+    }
+
+    #[inline(always)]
+    fn visit_eight(&mut self, _: Cell, triangles: &[TriangleId], eight: &Eight) -> ControlFlow<()> {
+        self.visited = self.visitor.visit_eight(self.cell, triangles, eight);
         self.visited
     }
 

@@ -1,61 +1,58 @@
 //! Dividing what is crowded, from the whole scene down.
 //!
-//! A grid costs about as much as a vector test or two, so a voxel is divided where the tests that are expected to be left,
-//! in the voxels that a ray passes, and the grid cost less than testing all. A ray that passes a box passes a voxel in it
-//! with the ratio of their surfaces (MacDonald & Booth 1990).
+//! Every triangle is in one voxel: that which the middle of its box is in. So each is stored once, boxes of voxels' contents
+//! overlap a little, and a list is sorted in one pass. What is much longer than a voxel would make its box as long. Such
+//! triangles are kept apart, as a further content of the grid, where boxes' surfaces say that it pays: a ray that passes a
+//! box passes one in it with the ratio of their surfaces (MacDonald & Booth 1990).
 //!
-//! Dividing lists a triangle again in each voxel that it comes near. So that long thin ones do not fill the memory, there
-//! is a limit to how many times more entries all divisions down to a voxel may make. Eights of triangles with a box each cost no
-//! entries: that is what lists are made of wherever there is room, and what is done with the long ones that are not divided, the
-//! fans above all.
+//! A list that is short enough is cut into eights of neighbours with a box each, where surfaces say. A list that voxels do not
+//! take apart, copies above all, is cut in the same way.
 //!
 //! MacDonald, Booth: Heuristics for Ray Tracing Using Space Subdivision. The Visual Computer 6(3), 1990.
 
-use std::slice::Chunks;
+use std::ops::Range;
 
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
+use super::cut::{cut, middles};
 use super::group::{GROUP, Group};
 use super::sort::{Extent, Lattice};
 use super::walk::MOST_DEPTH;
-use super::{Cube, NestedGrid, Node, SLOTS};
+use super::{Cube, MOST, NestedGrid, Node, SLOTS};
 use crate::geometry::{TriangleId, Triangles, is_finite};
-use crate::occlusion::Cell;
+use crate::occlusion::Eight;
+use crate::occlusion::eight::AT_ONCE;
 
-/// A voxel with at most so many triangles, five vectors full, is never divided.
-const FEW: usize = 40;
+/// A voxel with at most so many triangles, six vectors full, is never divided.
+const FEW: usize = 48;
 
-/// Triangles of one vector test.
-const AT_ONCE: usize = 8;
+/// A part of a scene with at most so many triangles, two vectors full, gains nothing by a grid of its own.
+const LEAST_DIVIDED: usize = 16;
 
 /// Triangles to a voxel of a grid, and voxels at most: half of what there are bits for, so that there is room for eights.
-const PER_VOXEL: usize = 4;
+const PER_VOXEL: usize = 6;
 const MOST_VOXELS: usize = SLOTS / 2;
 
-/// What a grid costs, in vector tests.
-const GRID_COST: f32 = 1.5;
+/// Voxels that there are numbers for.
+const VOXELS: usize = (MOST * MOST * MOST) as usize;
 
-/// How many times as many entries may be made as there are triangles, on the way down to a voxel.
-const MOST_GROWTH: f32 = 10.0;
+/// Triangles that are more than one of these times as long as a voxel, along some axis, may be kept apart from all voxels.
+const LARGE: [f32; 3] = [1.0, 2.0, 4.0];
+const SIZES: usize = LARGE.len() + 1;
 
-/// A voxel whose longest side is fewer paddings than this is not divided.
-const FEWEST_PADDINGS: f32 = 8.0;
+/// From this depth on lists are cut, and not sorted into voxels: each step leaves a thirty-second, so seven are enough for
+/// 2³² triangles, and one more for what does not find room.
+const CUT_FROM: usize = MOST_DEPTH - 8;
 
 /// Lists longer than this are sorted by several threads.
-const WORTH_A_THREAD: usize = 4096;
+pub(super) const WORTH_A_THREAD: usize = 4096;
 
 /// Sorts all triangles.
 pub(super) fn build(triangles: &Triangles) -> NestedGrid {
-    let cube = Cube::over(triangles);
     let all: Vec<TriangleId> = (0..triangles.len() as TriangleId).collect();
-    let sorter = Sorter::new(triangles, cube, &all);
-    let list: Vec<u32> = (0..sorter.ids.len() as u32).collect();
-    // Places of entries have 32 bits.
-    let growth = MOST_GROWTH.min((u32::MAX / list.len().max(1) as u32) as f32);
-    let root =
-        sorter.bounds().and_then(|bounds| sorter.grid(bounds, &list, Depth { level: 0, growth }));
-    sorter.finish(root)
+    let cube = Cube::over(triangles);
+    Sorter::new(triangles, cube, &all, Extent::ALL).build()
 }
 
 /// Sorts some of the triangles, and only where they are in a box of the scene.
@@ -67,19 +64,8 @@ pub(super) fn divide(
 ) -> Option<NestedGrid> {
     let cube = Cube::over(triangles);
     let place = |corner| cube.place(corner).as_vec3a();
-    let extent = Extent { low: place(low) - cube.padding, high: place(high) + cube.padding };
-    let sorter = Sorter::new(triangles, cube, list);
-    let list: Vec<u32> = (0..sorter.ids.len() as u32).collect();
-    let bounds = sorter.bounds()?.within(extent, cube.padding);
-    let root = sorter.grid(bounds, &list, Depth { level: 1, growth: MOST_GROWTH })?;
-    Some(sorter.finish(Some(root)))
-}
-
-/// How far down, and how many times more entries there may yet be.
-#[derive(Clone, Copy)]
-struct Depth {
-    level: usize,
-    growth: f32,
+    let around = Extent { low: place(low) - cube.padding, high: place(high) + cube.padding };
+    (list.len() > LEAST_DIVIDED).then(|| Sorter::new(triangles, cube, list, around).build())
 }
 
 /// A grid in the making.
@@ -89,15 +75,15 @@ struct Grid {
     slots: Vec<Slot>,
     /// The grids in those that are divided.
     inside: Vec<Grid>,
-    /// The lists of the others, one after another.
+    /// The triangles of the eights, one after another.
     lists: Vec<u32>,
 }
 
-/// Something that a voxel holds: a grid, a list or a part of it.
+/// Something that a voxel holds: a grid, or an eight.
 struct Slot {
     voxel: u32,
-    /// Where its list ends. That of a grid is empty.
-    end: u32,
+    /// Triangles of the eight; none of a grid.
+    count: u32,
     bounds: Extent,
 }
 
@@ -108,69 +94,82 @@ struct Sorted {
     parts: Vec<Part>,
 }
 
-/// A voxel that holds something.
+/// A voxel that holds something, and where it is in the sorted list.
 #[derive(Clone, Copy)]
 struct Part {
     voxel: u32,
-    /// Of the sorted list.
-    start: u32,
-    end: u32,
-    /// The box of its triangles, where they are in it.
+    start: usize,
+    end: usize,
+}
+
+/// Some triangles: how many, and their box.
+#[derive(Clone, Copy)]
+struct Heap {
+    count: u32,
     bounds: Extent,
 }
 
-struct Sorter {
-    cube: Cube,
-    /// The triangles that are finite, and where they are in the cube.
-    ids: Vec<TriangleId>,
-    corners: Vec<[Vec3A; 3]>,
+impl Heap {
+    const EMPTY: Self = Self { count: 0, bounds: Extent::EMPTY };
+
+    #[inline(always)]
+    fn add(&mut self, bounds: Extent) {
+        self.count += 1;
+        self.bounds = self.bounds.union(bounds);
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.count += other.count;
+        self.bounds = self.bounds.union(other.bounds);
+    }
+
+    /// What it costs the rays that meet the box, as many as its surface. Less than one test a triangle, for
+    /// what is many is divided further.
+    fn cost(&self) -> f32 {
+        if self.count == 0 { 0.0 } else { (self.count as f32).sqrt() * self.bounds.half_area() }
+    }
 }
 
-impl Sorter {
-    fn new(triangles: &Triangles, cube: Cube, list: &[TriangleId]) -> Self {
+/// Where a triangle goes: its voxel, and how many of the lengths in [`LARGE`] it exceeds.
+#[derive(Clone, Copy)]
+struct Place {
+    voxel: u8,
+    size: u8,
+}
+
+struct Sorter<'a> {
+    triangles: &'a Triangles,
+    cube: Cube,
+    /// The box outside of which nothing matters.
+    around: Extent,
+    /// The triangles that are finite, and their boxes in the cube.
+    ids: Vec<TriangleId>,
+    extents: Vec<Extent>,
+}
+
+impl<'a> Sorter<'a> {
+    fn new(triangles: &'a Triangles, cube: Cube, list: &[TriangleId], around: Extent) -> Self {
         let finite = |id: &&TriangleId| is_finite(&triangles.get(**id));
         let ids: Vec<TriangleId> = list.par_iter().filter(finite).copied().collect();
         let place = |corner: Vec3A| cube.place(corner.as_dvec3()).as_vec3a();
-        let corners =
-            ids.par_iter().map(|&id| triangles.corners()[id as usize].map(place)).collect();
-        Self { cube, ids, corners }
+        let extent = |&id: &TriangleId| Extent::of(&triangles.corners()[id as usize].map(place));
+        let extents = ids.par_iter().map(extent).collect();
+        Self { triangles, cube, around, ids, extents }
     }
 
-    /// The box of all, with padding; none without any.
-    fn bounds(&self) -> Option<Extent> {
-        let boxes = self.corners.iter().map(Extent::of);
-        boxes.reduce(Extent::union).map(|tight| tight.within(Extent::ALL, self.cube.padding))
+    fn build(self) -> NestedGrid {
+        let list: Vec<u32> = (0..self.ids.len() as u32).collect();
+        let root = (!list.is_empty()).then(|| self.grid(list, 0));
+        self.finish(root)
     }
 
-    /// The grid of a list of triangles that are in a box; `None` if it gains too little.
-    fn grid(&self, bounds: Extent, list: &[u32], depth: Depth) -> Option<Grid> {
-        let padding = self.cube.padding;
-        let mut lattice = Lattice::over(bounds, MOST_VOXELS.min(list.len() / PER_VOXEL), padding);
-        let Sorted { list: mut sorted, mut parts } = self.sort(&lattice, list);
-        let mut growth = sorted.len() as f32 / list.len() as f32;
-        if depth.level == 0 {
-            // There must be an outermost grid, if only of one voxel.
-            if growth > depth.growth {
-                lattice = Lattice::over(bounds, 1, padding);
-                sorted = list.to_vec();
-                parts = vec![Part { voxel: 0, start: 0, end: list.len() as u32, bounds }];
-                growth = 1.0;
-            }
-        } else {
-            let left: f32 = parts.iter().map(|part| tests(part.len())).sum();
-            let pays = lattice.share() * left + GRID_COST < tests(list.len());
-            let too_small = lattice.side.max_element() < FEWEST_PADDINGS * padding;
-            if !pays || too_small || growth > depth.growth {
-                return None;
-            }
-        }
-        let depth = Depth { level: depth.level + 1, growth: depth.growth / growth };
+    /// The grid of a list of triangles.
+    fn grid(&self, list: Vec<u32>, level: usize) -> Grid {
+        let voxels = MOST_VOXELS.min(list.len() / PER_VOXEL).max(1);
+        let lattice = Lattice::over(middles(&self.extents, &list), voxels);
+        let Sorted { mut list, parts } = self.sorted(&lattice, list, level);
         let divide = |part: &Part| {
-            let (list, bounds) = (part.of(&sorted), part.bounds);
-            let crowded = list.len() > FEW && depth.level < MOST_DEPTH;
-            crowded.then(|| {
-                self.grid(bounds, list, depth).unwrap_or_else(|| self.bundle(bounds, list))
-            })
+            (part.len() > FEW).then(|| self.grid(list[part.range()].to_vec(), level + 1))
         };
         let divided: Vec<Option<Grid>> = if list.len() > WORTH_A_THREAD {
             parts.par_iter().map(divide).collect()
@@ -178,83 +177,114 @@ impl Sorter {
             parts.iter().map(divide).collect()
         };
         let mut grid = Grid::over(&lattice);
-        let undivided = parts.iter().zip(&divided).filter(|(_, inside)| inside.is_none());
-        grid.lists.reserve_exact(undivided.map(|(part, _)| part.len()).sum());
         grid.slots.reserve_exact(SLOTS);
-        // Eights are worth a box each as long as there are bits for them.
         let mut room = SLOTS - parts.len();
         for (part, inside) in parts.iter().zip(divided) {
-            if let Some(inside) = inside {
-                grid.add_grid(part.voxel, part.bounds, inside);
-                continue;
-            }
-            let list = part.of(&sorted);
+            let list = &mut list[part.range()];
             let more = list.len().div_ceil(AT_ONCE) - 1;
-            if more > 0 && more <= room {
+            if let Some(inside) = inside {
+                grid.add_grid(part.voxel, self.bounds(list), inside);
+            } else if more <= room {
                 room -= more;
-                self.add_parts(&mut grid, &lattice, part.voxel, list.chunks(AT_ONCE));
-            } else if more > 1 {
-                grid.add_grid(part.voxel, part.bounds, self.bundle(part.bounds, list));
+                self.add_eights(&mut grid, part.voxel, list);
             } else {
-                grid.add_list(part.voxel, part.bounds, list);
+                // A grid of nothing but its eights.
+                let mut inside = Grid::over(&lattice);
+                self.add_eights(&mut inside, part.voxel, list);
+                grid.add_grid(part.voxel, self.bounds(list), inside);
             }
         }
-        Some(grid)
-    }
-
-    /// A long list that is not divided, in eights with a box each: a grid of one voxel.
-    fn bundle(&self, bounds: Extent, list: &[u32]) -> Grid {
-        let lattice = Lattice::over(bounds, 1, self.cube.padding);
-        let mut grid = Grid::over(&lattice);
-        grid.lists.reserve_exact(list.len());
-        let eights = list.len().div_ceil(AT_ONCE).div_ceil(SLOTS);
-        self.add_parts(&mut grid, &lattice, 0, list.chunks(eights * AT_ONCE));
         grid
     }
 
-    /// Adds parts of the list of a voxel, each with the box of its triangles where they are in the voxel.
-    fn add_parts(&self, grid: &mut Grid, lattice: &Lattice, voxel: u32, parts: Chunks<u32>) {
-        for part in parts {
-            let boxes = part.iter().map(|&index| Extent::of(&self.corners[index as usize]));
-            let bounds = boxes.fold(Extent::EMPTY, Extent::union);
-            grid.add_list(voxel, lattice.within(voxel, bounds), part);
+    /// A list by voxel, or cut into parts where voxels leave most of it in one.
+    fn sorted(&self, lattice: &Lattice, list: Vec<u32>, level: usize) -> Sorted {
+        let sorted = self.sort(lattice, list);
+        let largest = sorted.parts.iter().map(Part::len).max().unwrap_or(0);
+        let count = sorted.list.len();
+        if count <= FEW || (level < CUT_FROM && 4 * largest <= 3 * count) {
+            return sorted;
+        }
+        let mut list = sorted.list;
+        let size = count.div_ceil(MOST_VOXELS * AT_ONCE) * AT_ONCE;
+        cut(&self.extents, &mut list, size);
+        let part = |start| Part { voxel: 0, start, end: count.min(start + size) };
+        let parts = (0..count).step_by(size).map(part).collect();
+        Sorted { list, parts }
+    }
+
+    /// The box of some triangles, with padding.
+    fn bounds(&self, list: &[u32]) -> Extent {
+        let boxes = list.iter().map(|&index| self.extents[index as usize]);
+        boxes.fold(Extent::EMPTY, Extent::union).within(self.around, self.cube.padding)
+    }
+
+    /// Adds a list in eights of neighbours, each with its box; ids are in ascending order in each.
+    fn add_eights(&self, grid: &mut Grid, voxel: u32, list: &mut [u32]) {
+        cut(&self.extents, list, AT_ONCE);
+        for eight in list.chunks_mut(AT_ONCE) {
+            eight.sort_unstable();
+            grid.add_eight(voxel, self.bounds(eight), eight);
         }
     }
 
-    /// Sorts a list by voxel; ids stay in ascending order.
-    fn sort(&self, lattice: &Lattice, list: &[u32]) -> Sorted {
-        let overlapped = |&index: &u32| lattice.overlapped(&self.corners[index as usize]);
-        let voxels: Vec<u64> = if list.len() > WORTH_A_THREAD {
-            list.par_iter().map(overlapped).collect()
-        } else {
-            list.iter().map(overlapped).collect()
+    /// Sorts a list by the voxels that the middles of the triangles are in; behind all is what is kept apart.
+    fn sort(&self, lattice: &Lattice, list: Vec<u32>) -> Sorted {
+        let place = |&index: &u32| {
+            let extent = self.extents[index as usize];
+            let length = ((extent.high - extent.low) / lattice.side).max_element();
+            let size = LARGE.iter().filter(|&&large| length > large).count();
+            Place { voxel: lattice.voxel_of(extent.middle()) as u8, size: size as u8 }
         };
-        let mut counts = [0; 64];
-        voxels.iter().copied().flat_map(ones).for_each(|voxel| counts[voxel] += 1);
-        let mut ends = [0; 64];
+        let places: Vec<Place> = if list.len() > WORTH_A_THREAD {
+            list.par_iter().map(place).collect()
+        } else {
+            list.iter().map(place).collect()
+        };
+        let apart_from = self.apart_from(&list, &places);
+        let part = |place: &Place| {
+            if usize::from(place.size) >= apart_from { VOXELS } else { usize::from(place.voxel) }
+        };
+        let mut counts = [0; VOXELS + 1];
+        places.iter().for_each(|place| counts[part(place)] += 1);
+        let mut ends = [0; VOXELS + 1];
         let mut total = 0;
         for (end, count) in ends.iter_mut().zip(counts) {
             *end = total;
             total += count;
         }
-        let mut sorted = vec![0; total as usize];
-        let mut bounds = [Extent::EMPTY; 64];
-        for (&index, &voxels) in list.iter().zip(&voxels) {
-            let extent = Extent::of(&self.corners[index as usize]);
-            for voxel in ones(voxels) {
-                sorted[ends[voxel] as usize] = index;
-                ends[voxel] += 1;
-                bounds[voxel] = bounds[voxel].union(extent);
-            }
+        let mut sorted = vec![0; list.len()];
+        for (index, place) in list.into_iter().zip(&places) {
+            let end = &mut ends[part(place)];
+            sorted[*end] = index;
+            *end += 1;
         }
         let part = |voxel: usize| Part {
-            voxel: voxel as u32,
+            voxel: voxel.min(VOXELS - 1) as u32,
             start: ends[voxel] - counts[voxel],
             end: ends[voxel],
-            bounds: lattice.within(voxel as u32, bounds[voxel]),
         };
-        let occupied = (0..64).filter(|&voxel| counts[voxel] > 0);
+        let occupied = (0..=VOXELS).filter(|&voxel| counts[voxel] > 0);
         Sorted { list: sorted, parts: occupied.map(part).collect() }
+    }
+
+    /// The size from which on it costs least to keep triangles apart; `SIZES` if none are to be.
+    fn apart_from(&self, list: &[u32], places: &[Place]) -> usize {
+        let mut heaps = [[Heap::EMPTY; VOXELS]; SIZES];
+        for (&index, place) in list.iter().zip(places) {
+            let extent = self.extents[index as usize];
+            heaps[usize::from(place.size)][usize::from(place.voxel)].add(extent);
+        }
+        // What is not apart, by voxel.
+        let mut within = [Heap::EMPTY; VOXELS];
+        let mut costs = [0.0; SIZES + 1];
+        for size in 0..SIZES {
+            within.iter_mut().zip(&heaps[size]).for_each(|(within, heap)| within.join(heap));
+            let mut apart = Heap::EMPTY;
+            heaps[size + 1..].iter().flatten().for_each(|heap| apart.join(heap));
+            costs[size + 1] = within.iter().map(Heap::cost).sum::<f32>() + apart.cost();
+        }
+        (1..=SIZES).rev().min_by(|&a, &b| costs[a].total_cmp(&costs[b])).unwrap_or(SIZES)
     }
 
     /// Puts the grids side by side.
@@ -264,6 +294,7 @@ impl Sorter {
             nodes: Vec::new(),
             groups: Vec::new(),
             order: Vec::new(),
+            eights: Vec::new(),
         };
         if let Some(root) = root {
             grid.nodes.push(Node::default());
@@ -272,6 +303,11 @@ impl Sorter {
         grid.nodes.shrink_to_fit();
         grid.groups.shrink_to_fit();
         grid.order.shrink_to_fit();
+        let corners = self.triangles.corners();
+        let eight = |ids: &[TriangleId]| {
+            Eight::new(std::array::from_fn(|lane| &corners[ids[lane] as usize]))
+        };
+        grid.eights = grid.order.par_chunks(AT_ONCE).map(eight).collect();
         grid
     }
 
@@ -282,20 +318,27 @@ impl Sorter {
         grid: &mut NestedGrid,
     ) {
         let (first_group, first_grid) = (grid.groups.len(), grid.nodes.len());
-        (node.first_group, node.first_grid) = (first_group as u32, first_grid as u32);
+        node.first_group = first_group as u32;
         node.slots = slots.len() as u32;
         grid.nodes[place] = node;
         grid.groups.resize(node.groups().end, Group::EMPTY);
-        let first = end_of(&grid.order);
-        grid.order.extend(lists.into_iter().map(|index| self.ids[index as usize]));
-        let mut start = first;
-        for (number, Slot { voxel, end, bounds }) in slots.into_iter().enumerate() {
-            let cell = Cell { start, end: first + end };
-            let group = &mut grid.groups[first_group + number / GROUP];
-            group.set(number % GROUP, voxel, bounds, cell);
-            start = cell.end;
-        }
         grid.nodes.resize(first_grid + inside.len(), Node::default());
+        let (mut next_grid, mut start) = (first_grid, 0);
+        for (number, Slot { voxel, count, bounds }) in slots.into_iter().enumerate() {
+            let held = if count == 0 {
+                next_grid += 1;
+                next_grid - 1
+            } else {
+                let list = &lists[start..start + count as usize];
+                start += count as usize;
+                let last = list.len() - 1;
+                let id = |lane: usize| self.ids[list[lane.min(last)] as usize];
+                grid.order.extend((0..AT_ONCE).map(id));
+                grid.order.len() / AT_ONCE - 1
+            };
+            let group = &mut grid.groups[first_group + number / GROUP];
+            group.set(number % GROUP, voxel, bounds, held as u32, count);
+        }
         for (number, inside) in inside.into_iter().enumerate() {
             self.put(inside, first_grid + number, grid);
         }
@@ -308,43 +351,24 @@ impl Grid {
         Self { node, slots: Vec::new(), inside: Vec::new(), lists: Vec::new() }
     }
 
-    fn add_list(&mut self, voxel: u32, bounds: Extent, list: &[u32]) {
+    fn add_eight(&mut self, voxel: u32, bounds: Extent, list: &[u32]) {
         self.lists.extend_from_slice(list);
-        self.slots.push(Slot { voxel, end: self.lists.len() as u32, bounds });
+        self.slots.push(Slot { voxel, count: list.len() as u32, bounds });
     }
 
     fn add_grid(&mut self, voxel: u32, bounds: Extent, inside: Grid) {
         self.node.divided |= 1 << self.slots.len();
         self.inside.push(inside);
-        self.add_list(voxel, bounds, &[]);
+        self.slots.push(Slot { voxel, count: 0, bounds });
     }
 }
 
 impl Part {
     fn len(&self) -> usize {
-        (self.end - self.start) as usize
+        self.end - self.start
     }
 
-    fn of<'a>(&self, sorted: &'a [u32]) -> &'a [u32] {
-        &sorted[self.start as usize..self.end as usize]
+    fn range(&self) -> Range<usize> {
+        self.start..self.end
     }
-}
-
-/// The places of the bits that are set.
-fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let place = bits.trailing_zeros();
-        bits &= bits.wrapping_sub(1);
-        (place < u64::BITS).then_some(place as usize)
-    })
-}
-
-/// Vector tests of so many triangles.
-fn tests(triangles: usize) -> f32 {
-    triangles.div_ceil(AT_ONCE) as f32
-}
-
-/// Where the next list starts.
-fn end_of(order: &[TriangleId]) -> u32 {
-    u32::try_from(order.len()).expect("fewer than 2^32 entries in voxels")
 }

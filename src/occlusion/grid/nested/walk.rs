@@ -10,15 +10,14 @@
 use glam::{DVec3, Vec3A};
 
 use super::group::GROUP;
-use super::{Content, NestedGrid, Node};
+use super::{NestedGrid, Node};
 use crate::geometry::Ray;
 use crate::geometry::lanes::{Lanes, Sixteen};
 use crate::occlusion::brute::visit_all;
 use crate::occlusion::clip::Clip;
 use crate::occlusion::{Visit, VisitMany};
 
-/// Grids within grids at most: each has at most half of the side of the one around it along some axis, and voxels are
-/// larger than the padding, 2⁻¹⁹; so there are fewer.
+/// Grids within grids at most: building ends before (`build`).
 pub(super) const MOST_DEPTH: usize = 24;
 
 /// Components of a direction smaller than this part of the largest are replaced by it: over the
@@ -29,7 +28,7 @@ const SMALLEST_COMPONENT: f32 = 1.0 / (1u64 << 40) as f32;
 const LENGTHS: std::ops::Range<f32> = 1e-18..1e18;
 
 /// A ray in the cube.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Line {
     inverse: Vec3A,
     /// A plane at p is passed at p·inverse + shift.
@@ -41,16 +40,6 @@ struct Line {
     /// Where along the ray the line starts, and how fast it goes: `t` of the line is (t − start)·rate.
     start: f64,
     rate: f64,
-}
-
-/// How a ray comes to the cube.
-#[derive(Clone, Copy)]
-enum Approach {
-    Never,
-    /// Along a line, and no farther than this `t` of the line.
-    Along(Line, f32),
-    /// From so far away that f64 cannot say.
-    Anyhow,
 }
 
 impl Line {
@@ -70,42 +59,6 @@ impl Line {
             start,
             rate,
         }
-    }
-
-    #[inline(always)]
-    fn approach(grid: &NestedGrid, ray: &Ray) -> Approach {
-        /// Farthest from the middle of the cube, in its sides.
-        const NEAR: f32 = 1.0;
-        let cube = &grid.cube;
-        let origin = (Vec3A::from(ray.origin) - cube.corner) * cube.factor;
-        let direction = Vec3A::from(ray.direction) * cube.factor;
-        let near = (origin - 0.5).abs().cmple(Vec3A::splat(NEAR)).all();
-        // Not where something is NaN.
-        if near && LENGTHS.contains(&direction.abs().max_element()) {
-            Approach::Along(Self::new(origin, direction, 0.0, 1.0), ray.end)
-        } else {
-            Self::from_afar(grid, ray)
-        }
-    }
-
-    #[cold]
-    fn from_afar(grid: &NestedGrid, ray: &Ray) -> Approach {
-        let (enter, leave) = match grid.clip(ray) {
-            Clip::Outside => return Approach::Never,
-            Clip::Everything => return Approach::Anyhow,
-            Clip::Inside(enter, leave) => (enter, leave),
-        };
-        let length = leave - enter;
-        let direction = ray.direction.as_dvec3() * (grid.cube.scale * length);
-        // A ray that only touches the cube has no length in it; nor has one that f64 cannot measure.
-        let direction = if direction.abs().max_element() >= f64::from(LENGTHS.start) {
-            direction
-        } else {
-            DVec3::splat(f64::from(LENGTHS.start))
-        };
-        let origin = grid.cube.place(ray.at(enter)).as_vec3a();
-        let rate = length.recip();
-        Approach::Along(Self::new(origin, direction.as_vec3a(), enter, rate), 1.0)
     }
 
     /// Where the line ends if nothing beyond `end` of the ray is of interest.
@@ -182,55 +135,105 @@ impl NestedGrid {
 }
 
 /// A ray that has come to the outermost grid.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Start {
-    approach: Approach,
+    line: Line,
+    /// No farther than this `t` of the line.
+    end: f32,
+    /// Whether it comes from so far away that f64 cannot say where it goes.
+    anyhow: bool,
     /// What it meets there.
     met: u64,
 }
 
 impl Start {
+    /// Written in place: a copy would wait for what was just written piece by piece.
     #[inline(always)]
-    fn new<L: Lanes>(grid: &NestedGrid, ray: &Ray) -> Self {
-        let approach = Line::approach(grid, ray);
-        let met = match (&approach, grid.nodes.first()) {
-            (Approach::Along(line, end), Some(node)) => {
-                grid.met::<L::Sixteen>(node, &LineLanes::new(line), *end)
+    fn set<L: Lanes>(&mut self, grid: &NestedGrid, ray: &Ray) {
+        /// Farthest from the middle of the cube, in its sides.
+        const NEAR: f32 = 1.0;
+        let cube = &grid.cube;
+        let origin = (Vec3A::from(ray.origin) - cube.corner) * cube.factor;
+        let direction = Vec3A::from(ray.direction) * cube.factor;
+        let near = (origin - 0.5).abs().cmple(Vec3A::splat(NEAR)).all();
+        // Not where something is NaN.
+        let (line, end) = if near && LENGTHS.contains(&direction.abs().max_element()) {
+            self.anyhow = false;
+            (Line::new(origin, direction, 0.0, 1.0), ray.end)
+        } else {
+            match self.from_afar(grid, ray) {
+                Some(from_afar) => from_afar,
+                None => return,
             }
-            _ => 0,
         };
-        Self { approach, met }
+        (self.line, self.end) = (line, end);
+        self.met = match grid.nodes.first() {
+            Some(node) => grid.met::<L::Sixteen>(node, &LineLanes::new(&line), end),
+            None => 0,
+        };
+    }
+
+    #[cold]
+    fn from_afar(&mut self, grid: &NestedGrid, ray: &Ray) -> Option<(Line, f32)> {
+        (self.met, self.anyhow) = (0, false);
+        let (enter, leave) = match grid.clip(ray) {
+            Clip::Outside => return None,
+            Clip::Everything => {
+                self.anyhow = true;
+                return None;
+            }
+            Clip::Inside(enter, leave) => (enter, leave),
+        };
+        let length = leave - enter;
+        let direction = ray.direction.as_dvec3() * (grid.cube.scale * length);
+        // A ray that only touches the cube has no length in it; nor has one that f64 cannot measure.
+        let direction = if direction.abs().max_element() >= f64::from(LENGTHS.start) {
+            direction
+        } else {
+            DVec3::splat(f64::from(LENGTHS.start))
+        };
+        let origin = grid.cube.place(ray.at(enter)).as_vec3a();
+        let rate = length.recip();
+        Some((Line::new(origin, direction.as_vec3a(), enter, rate), 1.0))
     }
 
     /// Whether the ray comes to anything.
     #[inline(always)]
     fn is_of_interest(&self) -> bool {
-        self.met != 0 || matches!(self.approach, Approach::Anyhow)
+        (self.met != 0) | self.anyhow
     }
 }
 
 #[inline(always)]
 pub(super) fn walk<L: Lanes, V: Visit + ?Sized>(grid: &NestedGrid, ray: &Ray, visitor: &mut V) {
-    go_on::<L, V>(grid, Start::new::<L>(grid, ray), visitor);
+    let mut start = Start::default();
+    start.set::<L>(grid, ray);
+    if start.is_of_interest() {
+        go_on::<L, V>(grid, &start, visitor);
+    }
 }
 
 #[inline(always)]
 pub(super) fn walk_many<L: Lanes, V: VisitMany>(grid: &NestedGrid, rays: &[Ray], visitors: &mut V) {
     /// Rays at once: what is known of them stays in the nearest cache.
     const AT_ONCE: usize = 32;
-    const NOWHERE: Start = Start { approach: Approach::Never, met: 0 };
+    let mut starts = [Start::default(); AT_ONCE];
     let mut first = 0;
     for rays in rays.chunks(AT_ONCE) {
-        let mut starts = [NOWHERE; AT_ONCE];
+        // Those that go on, by their number: without a branch, as nobody can foresee which do.
+        let mut going = [0u8; AT_ONCE];
+        let mut count = 0;
         for (number, ray) in rays.iter().enumerate() {
             if visitors.admits(first + number) {
-                starts[number] = Start::new::<L>(grid, ray);
+                let start = &mut starts[number];
+                start.set::<L>(grid, ray);
+                going[count] = number as u8;
+                count += usize::from(start.is_of_interest());
             }
         }
-        for (number, &start) in starts[..rays.len()].iter().enumerate() {
-            if start.is_of_interest() {
-                go_on::<L, _>(grid, start, &mut visitors.one(first + number));
-            }
+        for &number in &going[..count] {
+            let number = usize::from(number);
+            go_on::<L, _>(grid, &starts[number], &mut visitors.one(first + number));
         }
         first += AT_ONCE;
     }
@@ -238,19 +241,17 @@ pub(super) fn walk_many<L: Lanes, V: VisitMany>(grid: &NestedGrid, rays: &[Ray],
 
 /// From the outermost grid on.
 #[inline(always)]
-fn go_on<L: Lanes, V: Visit + ?Sized>(grid: &NestedGrid, start: Start, visitor: &mut V) {
-    let (line, mut end) = match start.approach {
-        Approach::Never => return,
-        Approach::Anyhow => return visit_all(&grid.order, 8, visitor),
-        Approach::Along(line, end) => (line, end),
-    };
+fn go_on<L: Lanes, V: Visit + ?Sized>(grid: &NestedGrid, start: &Start, visitor: &mut V) {
+    if start.anyhow {
+        return visit_all(&grid.order, 8, visitor);
+    }
     let Some(mut node) = grid.nodes.first() else { return };
-    let ordered = visitor.is_ordered();
-    let lanes = LineLanes::<L::Sixteen>::new(&line);
-    let mut met = start.met;
+    let (line, mut end, mut met) = (&start.line, start.end, start.met);
+    let lanes = LineLanes::<L::Sixteen>::new(line);
     // Grids around the present one of which something is left: their places, and what.
     let mut around = [[0u64; 2]; MOST_DEPTH];
     let (mut depth, mut place) = (0, 0);
+    let ordered = visitor.is_ordered();
     loop {
         if met == 0 {
             if depth == 0 {
@@ -261,32 +262,31 @@ fn go_on<L: Lanes, V: Visit + ?Sized>(grid: &NestedGrid, start: Start, visitor: 
             node = &grid.nodes[place as usize];
         }
         let slot = if ordered && met & (met - 1) != 0 {
-            grid.first_of(node, &line, met)
+            grid.first_of(node, line, met) as usize
         } else {
-            met.trailing_zeros()
+            met.trailing_zeros() as usize
         };
         met &= !(1 << slot);
-        match grid.content(node, slot as usize) {
-            Content::Grid(inside) => {
-                if met != 0 {
-                    around[depth] = [place, met];
-                    depth += 1;
-                }
-                place = inside as u64;
-                node = &grid.nodes[inside];
-                met = grid.met(node, &lanes, end);
+        let group = grid.group_of(node, slot);
+        let inside = group.inside(slot % GROUP);
+        if node.is_divided(slot) {
+            if met != 0 {
+                around[depth] = [place, met];
+                depth += 1;
             }
-            Content::List(cell) => {
-                let run = &grid.order[cell.start as usize..cell.end as usize];
-                if visitor.visit(cell, run).is_break() {
-                    return;
-                }
-                if ordered {
-                    let nearer = line.end(visitor.end());
-                    if nearer < end {
-                        end = nearer;
-                        met &= grid.met(node, &lanes, end);
-                    }
+            place = inside as u64;
+            node = &grid.nodes[inside];
+            met = grid.met(node, &lanes, end);
+        } else {
+            let cell = group.cell(slot % GROUP);
+            if visitor.visit_eight(cell, grid.listed(cell), &grid.eights[inside]).is_break() {
+                return;
+            }
+            if ordered {
+                let nearer = line.end(visitor.end());
+                if nearer < end {
+                    end = nearer;
+                    met &= grid.met(node, &lanes, end);
                 }
             }
         }
