@@ -20,12 +20,28 @@ pub struct Nearest {
 }
 
 /// Distance along the ray to the triangle's plane, in f64; `None` behind the origin or if parallel.
+///
+/// A test that rounds also reports triangles that the ray almost grazes, whose planes it may meet far beside them: beyond where a
+/// culler looks for them. So the distance is at most as far from the triangle's box as `slack` allows.
 #[inline]
-pub(super) fn distance(ray: &Ray, &[a, b, c]: &Triangle) -> Option<f64> {
+pub(super) fn distance(ray: &Ray, &[a, b, c]: &Triangle, slack: f64) -> Option<f64> {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let normal = (b - a).cross(c - a);
-    let t = normal.dot(a - ray.origin.as_dvec3()) / normal.dot(ray.direction.as_dvec3());
-    (t > 0.0 && t.is_finite()).then_some(t)
+    let t = normal.dot(a - origin) / normal.dot(direction);
+    if !(t > 0.0 && t.is_finite()) {
+        return None;
+    }
+    let (low, high) = (a.min(b).min(c) - slack - origin, a.max(b).max(c) + slack - origin);
+    let (mut enter, mut leave) = (0.0f64, f64::from(ray.end));
+    for axis in 0..3 {
+        if direction[axis] != 0.0 {
+            let (first, last) = (low[axis] / direction[axis], high[axis] / direction[axis]);
+            enter = enter.max(first.min(last));
+            leave = leave.min(first.max(last));
+        }
+    }
+    Some(if enter <= leave { t.clamp(enter, leave) } else { t })
 }
 
 pub(super) struct NearestHit<'a> {
@@ -92,7 +108,7 @@ impl<'a, T: TriangleTest, L: Lanes> NearestVisitor<'a, T, L> {
             ids,
             wanted: |_| true,
             hit: move |triangle| {
-                if let Some(t) = distance(ray, &triangles.get(triangle)) {
+                if let Some(t) = distance(ray, &triangles.get(triangle), triangles.slack()) {
                     let nearer = best.is_none_or(|best| (t, triangle) < (best.t, best.triangle));
                     if nearer {
                         *best = Some(Nearest { triangle, t });

@@ -175,7 +175,8 @@ impl Occlusion for Embree {
         let hit = self.scene.intersect(&Self::ray(ray, OPAQUE | TRANSPARENT))?;
         let triangle = self.triangle(&hit);
         // The place of the hit is computed as every backend computes it.
-        let t = distance(ray, &self.triangles.get(triangle)).unwrap_or(f64::from(hit.t));
+        let slack = self.triangles.slack();
+        let t = distance(ray, &self.triangles.get(triangle), slack).unwrap_or(f64::from(hit.t));
         Some(Nearest { triangle, t })
     }
 
