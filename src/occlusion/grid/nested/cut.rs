@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn nothing_is_lost_and_two_heaps_are_taken_apart() {
         let mut random = Random::new(5, 0);
-        let place = |number: usize| if number % 3 == 0 { 10.0 } else { 0.0 };
+        let place = |number: usize| if number.is_multiple_of(3) { 10.0 } else { 0.0 };
         let mut extent = |number| {
             let places = [0; 3].map(|_: u32| random.unit() as f32);
             Extent::at(Vec3A::from_array(places) + place(number))

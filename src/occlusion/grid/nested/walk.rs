@@ -161,8 +161,8 @@ impl Start {
             self.anyhow = false;
             (Line::new(origin, direction, 0.0, 1.0), ray.end)
         } else {
-            match self.from_afar(grid, ray) {
-                Some(from_afar) => from_afar,
+            match self.come_from_afar(grid, ray) {
+                Some(line) => line,
                 None => return,
             }
         };
@@ -174,7 +174,7 @@ impl Start {
     }
 
     #[cold]
-    fn from_afar(&mut self, grid: &NestedGrid, ray: &Ray) -> Option<(Line, f32)> {
+    fn come_from_afar(&mut self, grid: &NestedGrid, ray: &Ray) -> Option<(Line, f32)> {
         (self.met, self.anyhow) = (0, false);
         let (enter, leave) = match grid.clip(ray) {
             Clip::Outside => return None,
