@@ -8,7 +8,9 @@
 //! for the tree.
 
 mod build;
+mod cells;
 mod divide;
+mod few;
 mod node;
 
 pub(crate) use node::{Child, Node};
