@@ -2,7 +2,7 @@
 //!
 //! Top down by the surface area heuristic (MacDonald & Booth 1990; Wald 2007): many triangles by the cells of a grid, several levels of the
 //! tree at once (`cells`), then in bins along the longest axis (`divide`), few of them exactly (`few`). Below the parts that cells make it is always at a
-//! multiple of eight triangles, so that all clusters of a part but the last are full; then halves are collapsed into nodes of eight. The counts that
+//! multiple of eight triangles, so that all clusters of a part but the last are full; then halves are put into nodes of eight (`collapse`). The counts that
 //! the heuristic weighs are clusters: a cluster costs the same however full it is.
 //!
 //! MacDonald, Booth: Heuristics for Ray Tracing Using Space Subdivision. The Visual Computer 6(3), 1990.
@@ -10,15 +10,15 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
 use rayon::prelude::*;
 
 use super::cells::{self, MANY, Part};
+use super::collapse::{Half, collapse};
 use super::divide::{Around, Divided, Item, divide, places_of};
 use super::few::{self, FEW};
-use super::{Child, Cluster, Clusters, Node, WIDTH};
+use super::{Cluster, Clusters, Node, WIDTH};
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
-use crate::geometry::{Bounds, TriangleId, Triangles};
+use crate::geometry::{TriangleId, Triangles};
 
 /// Ranges with fewer triangles are split by one thread.
 const WORTH_A_THREAD: usize = 8192;
@@ -43,9 +43,7 @@ pub(super) fn build(triangles: &Triangles, ids: Range<TriangleId>) -> Clusters {
         let part = cells::sort(&mut items, &places, item);
         arranging.arrange_part(part, &mut items, 0)
     };
-    let (mut nodes, mut runs) = (Vec::new(), Vec::new());
-    collapse(&tree, &mut nodes, &mut runs);
-    nodes.shrink_to_fit();
+    let (nodes, runs) = collapse(&tree);
     let cluster = |run: Range<u32>| {
         let run = &items[run.start as usize..run.end as usize];
         let ids = std::array::from_fn(|lane| run[lane.min(run.len() - 1)].id());
@@ -84,22 +82,6 @@ impl LanesJob for Gather<'_> {
     }
 }
 
-/// A tree while it is built: two halves, or a cluster.
-struct Half {
-    bounds: Bounds,
-    inside: Option<Box<[Half; 2]>>,
-    /// What is in it.
-    items: Range<u32>,
-}
-
-impl Half {
-    fn of([left, right]: [Self; 2]) -> Self {
-        let bounds = left.bounds.union(right.bounds);
-        let items = left.items.start..right.items.end;
-        Self { bounds, inside: Some(Box::new([left, right])), items }
-    }
-}
-
 /// Sorts items so that those of a cluster are in a row. `first` is the place of the first one among all.
 #[derive(Clone, Copy)]
 struct Arranging {
@@ -115,11 +97,7 @@ impl Arranging {
             for Item(item) in &*items {
                 around.join(item);
             }
-            return Half {
-                bounds: around.bounds(),
-                inside: None,
-                items: first..first + count as u32,
-            };
+            return Half::cluster(around.bounds(), first..first + count as u32);
         }
         if count >= MANY {
             let unsorted = items.to_vec();
@@ -168,37 +146,4 @@ fn both<T: Send>(
     let (left, right) =
         if count < WORTH_A_THREAD { (left(), right()) } else { rayon::join(left, right) };
     [left, right]
-}
-
-/// Makes nodes of eight: of what a node holds, the largest is replaced by its halves as long as there is room.
-fn collapse(half: &Half, nodes: &mut Vec<Node>, runs: &mut Vec<Range<u32>>) -> u32 {
-    let place = nodes.len() as u32;
-    nodes.push(Node::EMPTY);
-    let mut held: Vec<&Half> = match &half.inside {
-        Some(inside) => inside.iter().collect(),
-        None => vec![half],
-    };
-    while held.len() < WIDTH {
-        let parts = held.iter().enumerate().filter(|(_, half)| half.inside.is_some());
-        let largest = parts.max_by(|a, b| half_area(a.1.bounds).total_cmp(&half_area(b.1.bounds)));
-        let Some((index, Half { inside: Some(inside), .. })) = largest else { break };
-        held[index] = &inside[0];
-        held.insert(index + 1, &inside[1]);
-    }
-    for (slot, half) in held.into_iter().enumerate() {
-        let child = match half.inside {
-            Some(_) => Child::Node(collapse(half, nodes, runs)),
-            None => {
-                runs.push(half.items.clone());
-                Child::Cluster(runs.len() as u32 - 1)
-            }
-        };
-        nodes[place as usize].set(slot, &half.bounds, child);
-    }
-    place
-}
-
-fn half_area(bounds: Bounds) -> f32 {
-    let Vec3 { x, y, z } = bounds.extent();
-    x * y + y * z + z * x
 }

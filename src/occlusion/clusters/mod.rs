@@ -9,6 +9,7 @@
 
 mod build;
 mod cells;
+mod collapse;
 mod divide;
 mod few;
 mod node;
