@@ -110,7 +110,7 @@ fn every_instruction_set_gives_the_certified_answers() {
         .flat_map(|&class| (0..40).map(move |index| query(class, index)))
         .collect();
     let triangles = Arc::new(queries.iter().map(|query| query.1).collect::<Triangles>());
-    for arithmetic in Arithmetic::ALL.into_iter().filter(|arithmetic| arithmetic.is_available()) {
+    for arithmetic in Arithmetic::available() {
         let brute = Brute::new(&triangles);
         let engine = Engine::<_, Exact>::new(triangles.clone(), brute, Some(arithmetic));
         for (ray, _) in &queries {
@@ -134,7 +134,7 @@ fn every_engine_gives_the_certified_answers_on_every_instruction_set() {
             .iter()
             .map(|(ray, _)| queries.iter().any(|(_, triangle)| blocks(ray, triangle)))
             .collect();
-        for arithmetic in Arithmetic::ALL.into_iter().filter(|a| a.is_available()) {
+        for arithmetic in Arithmetic::available() {
             let options = BuildOptions { arithmetic: Some(arithmetic), ..BuildOptions::default() };
             for backend in [Backend::Grid, Backend::Bvh2, Backend::Cwbvh, Backend::Brute] {
                 let engine = build(backend, Test::Exact, &triangles, &options).unwrap();

@@ -219,10 +219,15 @@ impl Arithmetic {
         }
     }
 
+    /// Those that this CPU has, the oldest first.
+    pub fn available() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|arithmetic| arithmetic.is_available())
+    }
+
     /// The newest that this CPU has: the one Embree chooses by itself.
     #[must_use]
     pub fn of_this_cpu() -> Self {
-        *Self::ALL.iter().rev().find(|a| a.is_available()).expect("SSE arithmetic is everywhere")
+        Self::available().last().expect("SSE arithmetic is everywhere")
     }
 
     /// Runs a job compiled for the instruction set. The caller has made sure that this CPU has it.

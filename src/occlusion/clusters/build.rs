@@ -1,103 +1,149 @@
 //! Grouping triangles into clusters, and clusters into nodes.
 //!
-//! Top down by the surface area heuristic with bins along the longest axis (MacDonald & Booth 1990; Wald
-//! 2007), always at a multiple of eight triangles, so that all clusters but the last are full; then halves are
-//! collapsed into nodes of eight. The counts that the heuristic weighs are clusters: a cluster costs
-//! the same however full it is. How a range is divided: `divide`.
+//! Top down by the surface area heuristic (MacDonald & Booth 1990; Wald 2007): many triangles by the cells of a grid, several levels of the
+//! tree at once (`cells`), then in bins along the longest axis (`divide`), few of them exactly (`few`). Below the parts that cells make it is always at a
+//! multiple of eight triangles, so that all clusters of a part but the last are full; then halves are put into nodes of eight (`collapse`). The counts that
+//! the heuristic weighs are clusters: a cluster costs the same however full it is.
 //!
 //! MacDonald, Booth: Heuristics for Ray Tracing Using Space Subdivision. The Visual Computer 6(3), 1990.
 //! Wald: On Fast Construction of SAH-based Bounding Volume Hierarchies. Symposium on Interactive Ray Tracing 2007.
 
 use std::ops::Range;
 
-use glam::Vec3;
+use rayon::prelude::*;
 
+use super::cells::{self, MANY, Part};
+use super::collapse::{Half, collapse};
 use super::divide::{Around, Divided, Item, divide, places_of};
-use super::{Child, Cluster, Clusters, Node, WIDTH};
-use crate::geometry::{Bounds, TriangleId, Triangles};
+use super::few::{self, FEW};
+use super::{Cluster, Clusters, Node, WIDTH};
+use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
+use crate::geometry::{TriangleId, Triangles};
 
 /// Ranges with fewer triangles are split by one thread.
 const WORTH_A_THREAD: usize = 8192;
 
 pub(super) fn build(triangles: &Triangles, ids: Range<TriangleId>) -> Clusters {
-    let mut items: Vec<Item> = ids.map(|id| Item::new(triangles.bounds_of(id), id)).collect();
-    if items.is_empty() {
-        return Clusters::default();
-    }
-    let places = places_of(&items);
-    let tree = arrange(&mut items, &places, 0);
-    let clusters: Vec<Cluster> = items.chunks(WIDTH).map(|run| cluster(triangles, run)).collect();
-    let mut nodes = Vec::new();
-    collapse(&tree, &mut nodes);
-    nodes.shrink_to_fit();
+    let arithmetic = Arithmetic::of_this_cpu();
+    let item = |number| {
+        let id = ids.start + number as u32;
+        Item::new(triangles.corners()[id as usize], id)
+    };
+    let arranging = Arranging { arithmetic };
+    let mut items = vec![Item(Around::NOTHING); ids.len()];
+    let tree = if ids.len() < MANY {
+        items.iter_mut().enumerate().for_each(|(number, slot)| *slot = item(number));
+        if items.is_empty() {
+            return Clusters::default();
+        }
+        let places = places_of(&items);
+        arranging.arrange(&mut items, &places, 0)
+    } else {
+        let places = Around::places_within(triangles.bounds().unwrap_or_default());
+        let part = cells::sort(&mut items, &places, item);
+        arranging.arrange_part(part, &mut items, 0)
+    };
+    let (nodes, runs) = collapse(&tree);
+    let cluster = |run: Range<u32>| {
+        let run = &items[run.start as usize..run.end as usize];
+        let ids = std::array::from_fn(|lane| run[lane.min(run.len() - 1)].id());
+        arithmetic.run(Gather { triangles, ids })
+    };
+    let clusters: Vec<Cluster> = runs.into_par_iter().with_min_len(512).map(cluster).collect();
     let sum: f64 = nodes.iter().map(Node::sum_of_cluster_extents).sum();
     let typical_extent = (sum / clusters.len() as f64) as f32;
     Clusters { clusters, nodes, typical_extent }
 }
 
-fn cluster(triangles: &Triangles, run: &[Item]) -> Cluster {
-    let ids: [TriangleId; WIDTH] = std::array::from_fn(|lane| run[lane.min(run.len() - 1)].id());
-    let lanes = ids.map(|id| triangles.get(id));
-    let corners = [0, 1, 2]
-        .map(|corner| [0, 1, 2].map(|axis| std::array::from_fn(|lane| lanes[lane][corner][axis])));
-    Cluster { corners, ids }
+/// A cluster of these triangles.
+struct Gather<'a> {
+    triangles: &'a Triangles,
+    ids: [TriangleId; WIDTH],
 }
 
-/// A tree while it is built: two halves, or a cluster.
-struct Half {
-    bounds: Bounds,
-    inside: Option<Box<[Half; 2]>>,
-    /// The first cluster in it.
-    first: u32,
-}
+impl LanesJob for Gather<'_> {
+    type Answer = Cluster;
 
-/// Sorts the items so that each eight in a row are a cluster. The box is around their places, or somewhat larger.
-fn arrange(items: &mut [Item], places: &Around, first: u32) -> Half {
-    if items.len() <= WIDTH {
-        let mut around = Around::NOTHING;
-        for Item(item) in &*items {
-            around.join(item);
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Cluster {
+        let mut corners = [[[0.0; WIDTH]; 3]; 3];
+        let mut first = 0;
+        while first < WIDTH {
+            let ids = &self.ids[first..first + L::COUNT];
+            let gathered = L::gather(self.triangles.corners(), ids);
+            for corner in 0..3 {
+                for axis in 0..3 {
+                    gathered[corner][axis].store_to(&mut corners[corner][axis], first);
+                }
+            }
+            first += L::COUNT;
         }
-        return Half { bounds: around.bounds(), inside: None, first };
+        Cluster { corners, ids: self.ids }
     }
-    let Divided { at, sides } = divide(items, places);
-    let (left, right) = items.split_at_mut(at);
-    let middle = first + (at / WIDTH) as u32;
-    let (left, right) = if left.len() + right.len() < WORTH_A_THREAD {
-        (arrange(left, &sides[0], first), arrange(right, &sides[1], middle))
-    } else {
-        rayon::join(|| arrange(left, &sides[0], first), || arrange(right, &sides[1], middle))
-    };
-    let bounds = left.bounds.union(right.bounds);
-    Half { bounds, inside: Some(Box::new([left, right])), first }
 }
 
-/// Makes nodes of eight: of what a node holds, the largest is replaced by its halves as long as there is room.
-fn collapse(half: &Half, nodes: &mut Vec<Node>) -> u32 {
-    let place = nodes.len() as u32;
-    nodes.push(Node::EMPTY);
-    let mut held: Vec<&Half> = match &half.inside {
-        Some(inside) => inside.iter().collect(),
-        None => vec![half],
-    };
-    while held.len() < WIDTH {
-        let parts = held.iter().enumerate().filter(|(_, half)| half.inside.is_some());
-        let largest = parts.max_by(|a, b| half_area(a.1.bounds).total_cmp(&half_area(b.1.bounds)));
-        let Some((index, Half { inside: Some(inside), .. })) = largest else { break };
-        held[index] = &inside[0];
-        held.insert(index + 1, &inside[1]);
-    }
-    for (slot, half) in held.into_iter().enumerate() {
-        let child = match half.inside {
-            Some(_) => Child::Node(collapse(half, nodes)),
-            None => Child::Cluster(half.first),
+/// Sorts items so that those of a cluster are in a row. `first` is the place of the first one among all.
+#[derive(Clone, Copy)]
+struct Arranging {
+    arithmetic: Arithmetic,
+}
+
+impl Arranging {
+    /// The box is around their places, or somewhat larger.
+    fn arrange(self, items: &mut [Item], places: &Around, first: u32) -> Half {
+        let count = items.len();
+        if count <= WIDTH {
+            let mut around = Around::NOTHING;
+            for Item(item) in &*items {
+                around.join(item);
+            }
+            return Half::cluster(around.bounds(), first..first + count as u32);
+        }
+        if count >= MANY {
+            let unsorted = items.to_vec();
+            let part = cells::sort(items, places, |number| unsorted[number]);
+            drop(unsorted);
+            if part.inside.is_some() {
+                return self.arrange_part(part, items, first);
+            }
+        }
+        let Divided { at, sides } = if count <= FEW {
+            few::divide(items, places, self.arithmetic)
+        } else {
+            divide(items, places)
         };
-        nodes[place as usize].set(slot, &half.bounds, child);
+        let (left, right) = items.split_at_mut(at);
+        Half::of(both(
+            count,
+            || self.arrange(left, &sides[0], first),
+            || self.arrange(right, &sides[1], first + at as u32),
+        ))
     }
-    place
+
+    /// The same of items that are sorted in parts.
+    fn arrange_part(self, part: Part, items: &mut [Item], first: u32) -> Half {
+        let Some(inside) = part.inside else {
+            return self.arrange(items, &places_of(items), first);
+        };
+        let count = items.len();
+        let [left, right] = *inside;
+        let at = left.items.len();
+        let (left_items, right_items) = items.split_at_mut(at);
+        Half::of(both(
+            count,
+            || self.arrange_part(left, left_items, first),
+            || self.arrange_part(right, right_items, first + at as u32),
+        ))
+    }
 }
 
-fn half_area(bounds: Bounds) -> f32 {
-    let Vec3 { x, y, z } = bounds.extent();
-    x * y + y * z + z * x
+/// Does both, at once if it is about many items.
+fn both<T: Send>(
+    count: usize,
+    left: impl FnOnce() -> T + Send,
+    right: impl FnOnce() -> T + Send,
+) -> [T; 2] {
+    let (left, right) =
+        if count < WORTH_A_THREAD { (left(), right()) } else { rayon::join(left, right) };
+    [left, right]
 }

@@ -1,18 +1,13 @@
-//! Where to divide a range of triangles, and doing so.
-//!
-//! Large ranges are cut at the boundary of a bin, in one pass without branches, and the few triangles that are missing for whole
-//! clusters come from the bin beside it. In small ranges, of which a bin holds a few, the exact place of the cut is found.
+//! Where to divide a range of triangles, and doing so: at the boundary of a bin, in one pass without branches. The few triangles
+//! that are missing for whole clusters come from the bin beside it.
 
-use glam::{Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec3, Vec3A, Vec4, Vec4Swizzles};
 
 use super::WIDTH;
 use crate::geometry::{Bounds, TriangleId};
 
 /// Bins in which a range of triangles is sorted to find where to cut it.
 const BINS: usize = 16;
-
-/// Ranges with fewer triangles are divided exactly.
-const EXACTLY: usize = 256;
 
 /// A box in two vectors of four; the fourth coordinates mean nothing.
 #[derive(Clone, Copy)]
@@ -24,6 +19,24 @@ pub(super) struct Around {
 impl Around {
     pub const NOTHING: Self = Self { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
 
+    /// Around the places of items within these bounds.
+    pub fn places_within(Bounds { min, max }: Bounds) -> Self {
+        Self { low: (2.0 * min).extend(0.0), high: (2.0 * max).extend(0.0) }
+    }
+
+    /// Where it begins along an axis.
+    pub fn low(&self, axis: usize) -> f32 {
+        self.low[axis]
+    }
+
+    /// Along which axis it is longest, and how long.
+    pub fn longest(&self) -> (usize, f32) {
+        let extent = self.high - self.low;
+        let axis = usize::from(extent.y > extent.x);
+        let axis = if extent.z > extent[axis] { 2 } else { axis };
+        (axis, extent[axis])
+    }
+
     #[inline(always)]
     pub fn join(&mut self, other: &Self) {
         self.low = self.low.min(other.low);
@@ -31,13 +44,13 @@ impl Around {
     }
 
     #[inline(always)]
-    fn join_place(&mut self, place: Vec4) {
+    pub fn join_place(&mut self, place: Vec4) {
         self.low = self.low.min(place);
         self.high = self.high.max(place);
     }
 
     /// Half of its surface; 0 of nothing.
-    fn half_area(&self) -> f32 {
+    pub fn half_area(&self) -> f32 {
         let Vec3 { x, y, z } = (self.high - self.low).xyz().max(Vec3::ZERO);
         x * y + y * z + z * x
     }
@@ -52,9 +65,10 @@ impl Around {
 pub(super) struct Item(pub Around);
 
 impl Item {
-    pub fn new(bounds: Bounds, id: TriangleId) -> Self {
-        let low = bounds.min.extend(f32::from_bits(id));
-        Self(Around { low, high: bounds.max.extend(0.0) })
+    #[inline(always)]
+    pub fn new([a, b, c]: [Vec3A; 3], id: TriangleId) -> Self {
+        let low = a.min(b).min(c).extend(f32::from_bits(id));
+        Self(Around { low, high: a.max(b).max(c).extend(0.0) })
     }
 
     pub fn id(&self) -> TriangleId {
@@ -63,7 +77,7 @@ impl Item {
 
     /// Twice the centre of the box.
     #[inline(always)]
-    fn place(&self) -> Vec4 {
+    pub fn place(&self) -> Vec4 {
         self.0.low + self.0.high
     }
 }
@@ -83,27 +97,20 @@ pub(super) struct Divided {
     pub sides: [Around; 2],
 }
 
-/// Moves one side's items to the front.
+/// Moves one side's items to the front. There are more than [`WIDTH`].
 pub(super) fn divide(items: &mut [Item], places: &Around) -> Divided {
-    let extent = places.high - places.low;
-    let axis = usize::from(extent.y > extent.x);
-    let axis = if extent.z > extent[axis] { 2 } else { axis };
-    let slots = Slots { axis, low: places.low[axis], scale: BINS as f32 / extent[axis] };
-    let cut = if slots.scale.is_finite() && items.len() > 2 * WIDTH {
-        Cut::best(items, slots)
-    } else {
-        None
-    };
-    match cut {
-        Some(cut) if items.len() >= EXACTLY => at_bin(items, slots, cut),
-        _ => {
-            let count = cut.map_or(items.len() / 2, |cut| cut.count);
-            let at = whole_clusters(count, items.len());
-            items.select_nth_unstable_by(at, |a, b| a.place()[axis].total_cmp(&b.place()[axis]));
-            let (left, right) = items.split_at(at);
-            Divided { at, sides: [places_of(left), places_of(right)] }
-        }
+    let (axis, extent) = places.longest();
+    let slots = Slots { axis, low: places.low(axis), scale: BINS as f32 / extent };
+    if slots.scale.is_finite()
+        && let Some(cut) = Cut::best(items, slots)
+    {
+        return at_bin(items, slots, cut);
     }
+    // All in one place, or so far apart that no box has a surface in f32.
+    let at = whole_clusters(items.len() / 2, items.len());
+    items.select_nth_unstable_by(at, |a, b| a.place()[axis].total_cmp(&b.place()[axis]));
+    let (left, right) = items.split_at(at);
+    Divided { at, sides: [places_of(left), places_of(right)] }
 }
 
 /// Divides at the boundary of a bin, or a few items beside it.
@@ -249,8 +256,8 @@ mod tests {
     /// Items of which many share a place.
     fn items(places: &[(u8, u8, u8)]) -> Vec<Item> {
         let item = |(id, &(x, y, z)): (usize, &(u8, u8, u8))| {
-            let low = Vec3::new(f32::from(x), f32::from(y), f32::from(z));
-            Item::new(Bounds { min: low, max: low + Vec3::splat(0.5) }, id as TriangleId)
+            let low = Vec3A::new(f32::from(x), f32::from(y), f32::from(z));
+            Item::new([low, low, low + 0.5], id as TriangleId)
         };
         places.iter().enumerate().map(item).collect()
     }

@@ -8,7 +8,10 @@
 //! for the tree.
 
 mod build;
+mod cells;
+mod collapse;
 mod divide;
+mod few;
 mod node;
 
 pub(crate) use node::{Child, Node};

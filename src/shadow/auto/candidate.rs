@@ -6,8 +6,8 @@ use super::policy::Prices;
 use crate::occlusion::{Occlusion, Test};
 use crate::shadow::{Combination, Method, Prepared, SelfShadow, VerdictKind, VerdictSet};
 
-/// Nanoseconds a triangle to group triangles into clusters, of all threads together: 0.35 to 0.45 µs (docs/growth.md).
-const CLUSTERS: f64 = 400.0;
+/// Nanoseconds a triangle to group triangles into clusters, of all threads together: 100 to 190 (docs/growth.md).
+const CLUSTERS: f64 = 180.0;
 
 /// Nanoseconds a triangle to sort clusters by the directions of a light (docs/growth.md).
 const LIGHT_MAP: f64 = 10.0;

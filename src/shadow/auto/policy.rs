@@ -17,11 +17,12 @@
 //!    nine times after the first two, of which the caches knew nothing yet; they also come from one corner of the picture. What has cost the price by
 //!    now is doubted no longer.
 //!
-//!    What was bought is asked next, a whole call: so it is known at once what it is worth.
+//!    What was bought is asked next, for [`FIRST_CALLS`]: so it is known at once what it is worth. The first one does not count, for
+//!    no cache knows anything of what was built.
 //!
 //! **Bound.** With costs that stay the same, the time of all queries is at most (2 + 1/√b) times that of the best single
 //! candidate in hindsight, building included, and (1 + 1/√b) times where nothing has to be built; and besides,
-//! one batch of each candidate. Rule 3 gives the 2: when a structure is bought for B, B was lost by not having it, and
+//! one batch of each candidate, and the first calls of what was bought. Rule 3 gives the 2: when a structure is bought for B, B was lost by not having it, and
 //! the best in hindsight has paid B or that; on a true word it is 1.62 + 8/√b. Rule 2 gives
 //! the rest. Costs that change are followed, as the estimates
 //! fade (`estimate`), without a bound.
@@ -44,6 +45,9 @@ const DOUBT: f64 = 16.0;
 /// A batch counts for at most so many times what was expected: what takes longer was interrupted, by another
 /// program or by the system.
 const MOST_SURPRISE: f64 = 8.0;
+
+/// Calls, whole, that go to what was bought. By one alone, whatever disturbed it would decide for long.
+const FIRST_CALLS: u32 = 4;
 
 /// What a light's structure that was never seen is taken to cost a query, as a share of what others need:
 /// structures for lights were not seen to save more than half (docs/methods.md).
@@ -119,8 +123,8 @@ pub(super) struct Policy {
     prices: Vec<Prices>,
     /// Nanoseconds that preparing took; none if it has not been prepared.
     prepared: Vec<Option<f64>>,
-    /// The one that was last prepared for a price.
-    bought: Option<usize>,
+    /// The one that was last prepared for a price, and how many of its first calls are still to come.
+    bought: Option<(usize, u32)>,
     scene: Level,
     lights: Vec<AtLight>,
     batches: f64,
@@ -187,7 +191,7 @@ impl Policy {
     pub fn prepare(&mut self, candidate: usize, nanoseconds: f64, others: &[usize]) {
         self.prepared[candidate] = Some(nanoseconds);
         if self.prices[candidate].scene > 0.0 {
-            self.bought = Some(candidate);
+            self.bought = Some((candidate, FIRST_CALLS));
         }
         for &other in others {
             self.prices[other].scene = 0.0;
@@ -199,8 +203,10 @@ impl Policy {
         let estimates: Vec<Option<f64>> =
             (0..self.prices.len()).map(|c| self.estimate(c, light, place)).collect();
         let ready = |&c: &usize| self.prepared[c].is_some() && self.affordable(c, light);
-        let unseen = |&c: &usize| estimates[c].is_none();
-        if let Some(candidate) = self.bought.filter(unseen).filter(ready) {
+        if let Some((candidate, calls)) = self.bought
+            && calls > 0
+            && ready(&candidate)
+        {
             return Choice { candidate, reason: Reason::Leads };
         }
         let cost = |c: usize| estimates[c].unwrap_or(f64::INFINITY);
@@ -261,6 +267,15 @@ impl Policy {
             } else {
                 account.without += nanoseconds;
                 account.queries_without += queries;
+            }
+        }
+        if let Some((bought, calls)) = &mut self.bought
+            && *bought == candidate
+            && *calls > 0
+        {
+            *calls -= 1;
+            if *calls + 1 == FIRST_CALLS {
+                return;
             }
         }
         let in_scene = self.scene.estimate(candidate, None);

@@ -125,6 +125,7 @@ mod tests {
     use super::super::bundle::{PACKET, Source};
     use super::super::columns::around;
     use super::super::planes::Ground;
+    use super::super::strategies::point;
     use super::*;
     use crate::geometry::Triangles;
     use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
@@ -196,16 +197,12 @@ mod tests {
         let canopy = [corner(-100.0, -100.0), corner(100.0, -100.0), corner(0.0, 200.0)];
         // Over most of the first square, and a little of two beside it.
         let parasol = [corner(-9.0, -9.0), corner(-2.0, -9.0), corner(-9.0, -2.0)];
-        for arithmetic in Arithmetic::ALL.into_iter().filter(|a| a.is_available()) {
+        for arithmetic in Arithmetic::available() {
             let (under, _) = arithmetic.run(Case { triangle: canopy, light, packets: floor() });
             assert_eq!((under.touched, under.covered), (u16::MAX, u16::MAX), "{arithmetic:?}");
             let (some, _) = arithmetic.run(Case { triangle: parasol, light, packets: floor() });
             assert_eq!((some.touched, some.covered), (0b1_0011, 0), "{arithmetic:?}");
         }
-    }
-
-    fn point(reach: f32) -> impl Strategy<Value = Vec3> {
-        prop::array::uniform3(-reach..reach).prop_map(Vec3::from_array)
     }
 
     proptest! {
@@ -226,7 +223,7 @@ mod tests {
                 }
                 rows
             };
-            for arithmetic in Arithmetic::ALL.into_iter().filter(|a| a.is_available()) {
+            for arithmetic in Arithmetic::available() {
                 let packets = places.iter().map(packet).collect();
                 let (judged, casts) = arithmetic.run(Case { triangle, light, packets });
                 for (place, cast) in casts.iter().enumerate() {

@@ -189,3 +189,14 @@ impl LanesJob for Walk<'_, '_> {
         self.walker.walk::<L>(self.source, &self.around, self.tally)
     }
 }
+
+#[cfg(test)]
+mod strategies {
+    use glam::Vec3;
+    use proptest::prelude::*;
+
+    /// A point of a cube around the origin, which reaches so far.
+    pub fn point(reach: f32) -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-reach..reach).prop_map(Vec3::from_array)
+    }
+}

@@ -173,6 +173,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::bundle::PACKET;
+    use super::super::strategies::point;
     use super::*;
     use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 
@@ -202,14 +203,6 @@ mod tests {
         rows
     }
 
-    fn available() -> impl Iterator<Item = Arithmetic> {
-        Arithmetic::ALL.into_iter().filter(|arithmetic| arithmetic.is_available())
-    }
-
-    fn point(reach: f32) -> impl Strategy<Value = Vec3> {
-        prop::array::uniform3(-reach..reach).prop_map(Vec3::from_array)
-    }
-
     fn place(size: f32) -> impl Strategy<Value = (Vec3, Vec<Vec3>, Vec3)> {
         let origins = prop::collection::vec(point(size), PACKET);
         (point(1000.0), origins, point(3.0)).prop_map(move |(place, origins, centre)| {
@@ -225,7 +218,7 @@ mod tests {
         let around = OriginBox { low: least, high: greatest };
         let perspective = Perspective::new(source, &around);
         let mut seen = false;
-        for arithmetic in available() {
+        for arithmetic in Arithmetic::available() {
             let (view, _) = arithmetic.run(Seen(&perspective, &rows(&origins)));
             let Some(base) = perspective.base(&view, centre) else { continue };
             seen = true;
@@ -286,7 +279,7 @@ mod tests {
         let place = light + Vec3::new(0.3, 5.0, 0.1);
         let there = OriginBox { low: place, high: place };
         let perspective = Perspective::new(&Source::Point(light), &there);
-        for arithmetic in available() {
+        for arithmetic in Arithmetic::available() {
             let (_, [x, y]) = arithmetic.run(Seen(&perspective, &rows(&origins)));
             for (lane, way) in ways.iter().enumerate() {
                 let radius = x.0[lane].abs() + y.0[lane].abs();

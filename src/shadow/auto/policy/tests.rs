@@ -273,6 +273,27 @@ fn the_first_batch_goes_to_the_candidate_that_needs_nothing() {
 }
 
 #[test]
+fn what_was_bought_is_not_judged_by_its_first_call() {
+    let mut world = World::flat(|_, _, _, candidate| [500.0, 30.0][candidate], 2);
+    world.scene = vec![0.0, 1e5];
+    let mut policy = world.policy();
+    let mut led = [0; 2];
+    for _ in 0..64 {
+        if let Some(candidate) = policy.worth_preparing() {
+            policy.prepare(candidate, world.scene[candidate], &[]);
+        }
+        let choice @ Choice { candidate, reason } = policy.choose(0, 0, BATCH);
+        led[candidate] += usize::from(reason == LEADS);
+        let is_cold = candidate == 1 && led[1] == 1;
+        let cost = if is_cold { 20_000.0 } else { (world.cost)(0, 0, 0, candidate) };
+        let (queries, nanoseconds) = (BATCH, cost * BATCH);
+        let seen = Observation { light: 0, place: 0, choice, queries, nanoseconds, building: 0.0 };
+        policy.observe(&seen);
+    }
+    assert_eq!(led[0], 1, "{led:?}");
+}
+
+#[test]
 fn an_interruption_counts_for_little() {
     let mut policy = World::flat(|_, _, _, _| 1.0, 2).policy();
     let mut observe = |nanoseconds: f64| {

@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 
+use super::super::strategies::point;
 use super::*;
 use crate::exact::certified;
 use crate::geometry::lanes::{Arithmetic, LanesJob};
@@ -54,7 +55,7 @@ fn ray(source: &Source, origin: Vec3) -> Ray {
 /// How many answers are left open; all others must be right.
 fn open(source: Source, triangles: &[Triangle], origins: &[Vec3]) -> usize {
     let mut all = 0;
-    for arithmetic in Arithmetic::ALL.into_iter().filter(|a| a.is_available()) {
+    for arithmetic in Arithmetic::available() {
         let said = arithmetic.run(Case { source, triangles, origins });
         for (origin, (certain, open)) in origins.iter().zip(said) {
             for (id, triangle) in triangles.iter().enumerate() {
@@ -69,10 +70,6 @@ fn open(source: Source, triangles: &[Triangle], origins: &[Vec3]) -> usize {
         }
     }
     all
-}
-
-fn point(reach: f32) -> impl Strategy<Value = Vec3> {
-    prop::array::uniform3(-reach..reach).prop_map(Vec3::from_array)
 }
 
 fn triangles() -> impl Strategy<Value = Vec<Triangle>> {
