@@ -3,6 +3,8 @@
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
+use glam::DVec3;
+
 use super::engine::{Engine, Job, TestEach, TestEight, admit};
 use super::walk::walk_any;
 use super::{Cell, Eight, Tally, Visit, Walk};
@@ -32,16 +34,24 @@ pub(super) fn distance(ray: &Ray, &[a, b, c]: &Triangle, slack: f64) -> Option<f
     if !(t > 0.0 && t.is_finite()) {
         return None;
     }
-    let (low, high) = (a.min(b).min(c) - slack - origin, a.max(b).max(c) + slack - origin);
+    let (low, high) = (a.min(b).min(c) - slack, a.max(b).max(c) + slack);
+    let place = origin + t * direction;
+    let is_within = place.cmpge(low).all() && place.cmple(high).all();
+    Some(if is_within { t } else { clamp(t, ray, low, high) })
+}
+
+/// The distance within a box that is nearest to `t`; `t` if the ray misses it.
+#[cold]
+fn clamp(t: f64, ray: &Ray, low: DVec3, high: DVec3) -> f64 {
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let (mut enter, mut leave) = (0.0f64, f64::from(ray.end));
-    for axis in 0..3 {
-        if direction[axis] != 0.0 {
-            let (first, last) = (low[axis] / direction[axis], high[axis] / direction[axis]);
-            enter = enter.max(first.min(last));
-            leave = leave.min(first.max(last));
-        }
+    for axis in (0..3).filter(|&axis| direction[axis] != 0.0) {
+        let low = (low[axis] - origin[axis]) / direction[axis];
+        let high = (high[axis] - origin[axis]) / direction[axis];
+        enter = enter.max(low.min(high));
+        leave = leave.min(low.max(high));
     }
-    Some(if enter <= leave { t.clamp(enter, leave) } else { t })
+    if enter <= leave { t.clamp(enter, leave) } else { t }
 }
 
 pub(super) struct NearestHit<'a> {
