@@ -1,27 +1,32 @@
 //! Eight triangles, stored as one vector test wants them.
+//!
+//! Gathering corners from all over the scene costs more than the test itself.
 
-use glam::Vec3A;
+use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob, Vector};
+use crate::geometry::{TriangleId, Triangles};
 
-use crate::geometry::lanes::{Lanes, Vector};
-
-/// Triangles of one vector test.
-pub(crate) const AT_ONCE: usize = 8;
+/// Triangles of an [`Eight`], and of all that is made of them.
+pub const WIDTH: usize = 8;
 
 /// The corners of eight triangles: corner, coordinate, triangle.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
-pub struct Eight([[[f32; AT_ONCE]; 3]; 3]);
+pub struct Eight([[[f32; WIDTH]; 3]; 3]);
 
 impl Eight {
-    pub(crate) fn new(triangles: [&[Vec3A; 3]; AT_ONCE]) -> Self {
-        let mut corners = [[[0.0; AT_ONCE]; 3]; 3];
-        for (corner, values) in corners.iter_mut().enumerate() {
-            for (lane, triangle) in triangles.iter().enumerate() {
-                let [x, y, z] = triangle[corner].to_array();
-                (values[0][lane], values[1][lane], values[2][lane]) = (x, y, z);
-            }
-        }
-        Self(corners)
+    /// Of these triangles; by an arithmetic that this CPU has, whichever is fastest.
+    pub(crate) fn new(
+        triangles: &Triangles,
+        ids: &[TriangleId; WIDTH],
+        arithmetic: Arithmetic,
+    ) -> Self {
+        arithmetic.run(Gather { triangles, ids })
+    }
+
+    /// The coordinates of a corner of all eight, by axis.
+    #[inline(always)]
+    pub(crate) fn corner(&self, corner: usize) -> &[[f32; WIDTH]; 3] {
+        &self.0[corner]
     }
 
     /// The corners of as many triangles as there are lanes, from `first` on.
@@ -33,5 +38,31 @@ impl Eight {
             [L::load(bx, first), L::load(by, first), L::load(bz, first)],
             [L::load(cx, first), L::load(cy, first), L::load(cz, first)],
         ]
+    }
+}
+
+struct Gather<'a> {
+    triangles: &'a Triangles,
+    ids: &'a [TriangleId; WIDTH],
+}
+
+impl LanesJob for Gather<'_> {
+    type Answer = Eight;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Eight {
+        let mut corners = [[[0.0; WIDTH]; 3]; 3];
+        let mut first = 0;
+        while first < WIDTH {
+            let ids = &self.ids[first..first + L::COUNT];
+            let gathered = L::gather(self.triangles.corners(), ids);
+            for (corners, gathered) in corners.iter_mut().zip(gathered) {
+                for (values, gathered) in corners.iter_mut().zip(gathered) {
+                    gathered.store_to(values, first);
+                }
+            }
+            first += L::COUNT;
+        }
+        Eight(corners)
     }
 }

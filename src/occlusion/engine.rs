@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::any::{AnyOccluders, OccluderIn};
-use super::eight::{AT_ONCE, Eight};
+use super::eight::{Eight, WIDTH};
 use super::nearest::NearestHit;
 use super::sparing::SparingOccluder;
 use super::walk::walk_any;
@@ -224,7 +224,7 @@ where
     #[inline(always)]
     fn run(mut self) -> ControlFlow<()> {
         let mut first = 0;
-        while first < AT_ONCE {
+        while first < WIDTH {
             let claims = T::claims::<L>(self.each.lanes, &self.eight.load(first));
             let claimed = claims.certain | claims.open;
             if claimed != 0 {

@@ -32,9 +32,9 @@ pub use brute::Brute;
 pub use bvh2::Bvh2;
 pub(crate) use clip::Clip;
 pub(crate) use clusters::{Child, Node};
-pub use clusters::{Cluster, Clusters, WIDTH};
+pub use clusters::{Cluster, Clusters};
 pub use cwbvh::Cwbvh;
-pub use eight::Eight;
+pub use eight::{Eight, WIDTH};
 #[cfg(feature = "embree")]
 pub use embree::{Embree, EmbreeOptions, Isa, PacketWidth, Quality};
 pub use engine::Engine;

@@ -17,8 +17,9 @@ use super::collapse::{Half, collapse};
 use super::divide::{Around, Divided, Item, divide, places_of};
 use super::few::{self, FEW};
 use super::{Cluster, Clusters, Node, WIDTH};
-use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
+use crate::geometry::lanes::Arithmetic;
 use crate::geometry::{TriangleId, Triangles};
+use crate::occlusion::Eight;
 
 /// Ranges with fewer triangles are split by one thread.
 const WORTH_A_THREAD: usize = 8192;
@@ -47,39 +48,12 @@ pub(super) fn build(triangles: &Triangles, ids: Range<TriangleId>) -> Clusters {
     let cluster = |run: Range<u32>| {
         let run = &items[run.start as usize..run.end as usize];
         let ids = std::array::from_fn(|lane| run[lane.min(run.len() - 1)].id());
-        arithmetic.run(Gather { triangles, ids })
+        Cluster { corners: Eight::new(triangles, &ids, arithmetic), ids }
     };
     let clusters: Vec<Cluster> = runs.into_par_iter().with_min_len(512).map(cluster).collect();
     let sum: f64 = nodes.iter().map(Node::sum_of_cluster_extents).sum();
     let typical_extent = (sum / clusters.len() as f64) as f32;
     Clusters { clusters, nodes, typical_extent }
-}
-
-/// A cluster of these triangles.
-struct Gather<'a> {
-    triangles: &'a Triangles,
-    ids: [TriangleId; WIDTH],
-}
-
-impl LanesJob for Gather<'_> {
-    type Answer = Cluster;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) -> Cluster {
-        let mut corners = [[[0.0; WIDTH]; 3]; 3];
-        let mut first = 0;
-        while first < WIDTH {
-            let ids = &self.ids[first..first + L::COUNT];
-            let gathered = L::gather(self.triangles.corners(), ids);
-            for corner in 0..3 {
-                for axis in 0..3 {
-                    gathered[corner][axis].store_to(&mut corners[corner][axis], first);
-                }
-            }
-            first += L::COUNT;
-        }
-        Cluster { corners, ids: self.ids }
-    }
 }
 
 /// Sorts items so that those of a cluster are in a row. `first` is the place of the first one among all.

@@ -1,7 +1,7 @@
 //! Clusters: triangles in groups of eight neighbours, stored as one vector test wants them.
 //!
 //! A test of eight triangles at once costs little more than a test of one, as long as their corners lie
-//! side by side: gathering them from all over the scene costs more than the test. Light structures
+//! side by side (`eight`). Light structures
 //! list clusters, not triangles: an eighth of the entries, and every test is a full one.
 //!
 //! Clusters are the leaves of a tree of boxes, eight to a node (`build`, `node`). 40 bytes a triangle, and 5
@@ -16,18 +16,16 @@ mod node;
 
 pub(crate) use node::{Child, Node};
 
+use super::eight::{Eight, WIDTH};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
-use crate::geometry::lanes::{Lanes, Vector};
+use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
 
-/// Triangles of a cluster.
-pub const WIDTH: usize = 8;
-
-/// Eight triangles: corner, coordinate, triangle. Where there are fewer, the last one is repeated.
+/// Eight triangles. Where there are fewer, the last one is repeated.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Cluster {
-    corners: [[[f32; WIDTH]; 3]; 3],
+    corners: Eight,
     ids: [TriangleId; WIDTH],
 }
 
@@ -36,7 +34,7 @@ impl Cluster {
     #[must_use]
     #[inline(always)]
     pub fn corner(&self, corner: usize) -> &[[f32; WIDTH]; 3] {
-        &self.corners[corner]
+        self.corners.corner(corner)
     }
 
     /// The triangles.
@@ -56,9 +54,7 @@ impl Cluster {
     ) -> Option<TriangleId> {
         let mut first = 0;
         while first < WIDTH {
-            let corners: [Vector<L>; 3] =
-                [self.load(0, first), self.load(1, first), self.load(2, first)];
-            let claims = T::claims::<L>(lanes, &corners);
+            let claims = T::claims::<L>(lanes, &self.corners.load(first));
             let mut candidates = claims.certain | claims.open;
             while candidates != 0 {
                 let lane = candidates.trailing_zeros();
@@ -72,12 +68,6 @@ impl Cluster {
             first += L::COUNT;
         }
         None
-    }
-
-    #[inline(always)]
-    fn load<L: Lanes>(&self, corner: usize, first: usize) -> Vector<L> {
-        let [x, y, z] = &self.corners[corner];
-        [L::load(x, first), L::load(y, first), L::load(z, first)]
     }
 }
 

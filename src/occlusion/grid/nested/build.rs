@@ -20,9 +20,10 @@ use super::group::{GROUP, Group};
 use super::sort::{Extent, Lattice};
 use super::walk::MOST_DEPTH;
 use super::{Cube, MOST, NestedGrid, Node, SLOTS};
+use crate::geometry::lanes::Arithmetic;
 use crate::geometry::{TriangleId, Triangles, is_finite};
 use crate::occlusion::Eight;
-use crate::occlusion::eight::AT_ONCE;
+use crate::occlusion::eight::WIDTH;
 
 /// A voxel with at most so many triangles, six vectors full, is never divided.
 const FEW: usize = 48;
@@ -181,7 +182,7 @@ impl<'a> Sorter<'a> {
         let mut room = SLOTS - parts.len();
         for (part, inside) in parts.iter().zip(divided) {
             let list = &mut list[part.range()];
-            let more = list.len().div_ceil(AT_ONCE) - 1;
+            let more = list.len().div_ceil(WIDTH) - 1;
             if let Some(inside) = inside {
                 grid.add_grid(part.voxel, self.bounds(list), inside);
             } else if more <= room {
@@ -206,7 +207,7 @@ impl<'a> Sorter<'a> {
             return sorted;
         }
         let mut list = sorted.list;
-        let size = count.div_ceil(MOST_VOXELS * AT_ONCE) * AT_ONCE;
+        let size = count.div_ceil(MOST_VOXELS * WIDTH) * WIDTH;
         cut(&self.extents, &mut list, size);
         let part = |start| Part { voxel: 0, start, end: count.min(start + size) };
         let parts = (0..count).step_by(size).map(part).collect();
@@ -221,8 +222,8 @@ impl<'a> Sorter<'a> {
 
     /// Adds a list in eights of neighbours, each with its box; ids are in ascending order in each.
     fn add_eights(&self, grid: &mut Grid, voxel: u32, list: &mut [u32]) {
-        cut(&self.extents, list, AT_ONCE);
-        for eight in list.chunks_mut(AT_ONCE) {
+        cut(&self.extents, list, WIDTH);
+        for eight in list.chunks_mut(WIDTH) {
             eight.sort_unstable();
             grid.add_eight(voxel, self.bounds(eight), eight);
         }
@@ -303,11 +304,10 @@ impl<'a> Sorter<'a> {
         grid.nodes.shrink_to_fit();
         grid.groups.shrink_to_fit();
         grid.order.shrink_to_fit();
-        let corners = self.triangles.corners();
-        let eight = |ids: &[TriangleId]| {
-            Eight::new(std::array::from_fn(|lane| &corners[ids[lane] as usize]))
-        };
-        grid.eights = grid.order.par_chunks(AT_ONCE).map(eight).collect();
+        let arithmetic = Arithmetic::of_this_cpu();
+        let (ids, _) = grid.order.as_chunks::<WIDTH>();
+        let eight = |ids| Eight::new(self.triangles, ids, arithmetic);
+        grid.eights = ids.par_iter().map(eight).collect();
         grid
     }
 
@@ -333,8 +333,8 @@ impl<'a> Sorter<'a> {
                 start += count as usize;
                 let last = list.len() - 1;
                 let id = |lane: usize| self.ids[list[lane.min(last)] as usize];
-                grid.order.extend((0..AT_ONCE).map(id));
-                grid.order.len() / AT_ONCE - 1
+                grid.order.extend((0..WIDTH).map(id));
+                grid.order.len() / WIDTH - 1
             };
             let group = &mut grid.groups[first_group + number / GROUP];
             group.set(number % GROUP, voxel, bounds, held as u32, count);

@@ -12,7 +12,7 @@ use super::sort::Extent;
 use super::walk::LineLanes;
 use crate::geometry::lanes::Sixteen;
 use crate::occlusion::Cell;
-use crate::occlusion::eight::AT_ONCE;
+use crate::occlusion::eight::WIDTH;
 
 /// Contents of a group.
 pub(super) const GROUP: usize = 16;
@@ -60,7 +60,7 @@ impl Group {
     /// The triangles of an eight.
     #[inline(always)]
     pub fn cell(&self, slot: usize) -> Cell {
-        let start = AT_ONCE as u32 * self.inside[slot];
+        let start = WIDTH as u32 * self.inside[slot];
         Cell { start, end: start + u32::from(self.counts[slot]) }
     }
 
