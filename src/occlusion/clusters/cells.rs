@@ -279,6 +279,13 @@ mod tests {
     }
 
     #[test]
+    fn a_few_far_away_are_no_part_of_their_own() {
+        let place = |number| if number < LEAST - 1 { (200, 0, 0) } else { (0, 7, 7) };
+        let (_, part) = sorted(&items(&(0..900).map(place).collect::<Vec<_>>()));
+        assert!(part.inside.is_none());
+    }
+
+    #[test]
     fn what_is_in_one_place_is_one_part() {
         let (_, part) = sorted(&items(&[(7, 7, 7); 500]));
         assert!(part.inside.is_none());

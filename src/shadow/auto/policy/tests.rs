@@ -277,14 +277,14 @@ fn what_was_bought_is_not_judged_by_its_first_call() {
     let mut world = World::flat(|_, _, _, candidate| [500.0, 30.0][candidate], 2);
     world.scene = vec![0.0, 1e5];
     let mut policy = world.policy();
-    let mut led = [0; 2];
+    let (mut led, mut is_warm) = ([0; 2], false);
     for _ in 0..64 {
         if let Some(candidate) = policy.worth_preparing() {
             policy.prepare(candidate, world.scene[candidate], &[]);
         }
         let choice @ Choice { candidate, reason } = policy.choose(0, 0, BATCH);
         led[candidate] += usize::from(reason == LEADS);
-        let is_cold = candidate == 1 && led[1] == 1;
+        let is_cold = candidate == 1 && !std::mem::replace(&mut is_warm, true);
         let cost = if is_cold { 20_000.0 } else { (world.cost)(0, 0, 0, candidate) };
         let (queries, nanoseconds) = (BATCH, cost * BATCH);
         let seen = Observation { light: 0, place: 0, choice, queries, nanoseconds, building: 0.0 };
