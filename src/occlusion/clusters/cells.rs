@@ -10,8 +10,7 @@ use std::ops::Range;
 
 use glam::{Vec3, Vec4};
 
-use super::WIDTH;
-use super::divide::{Around, Item};
+use super::divide::{Around, Heap, Item};
 use super::few::FEW;
 
 /// Fewer items are divided one cut at a time: two passes over a grid of its own cost a range of these as much.
@@ -130,7 +129,7 @@ impl Cells {
             return Part { items, inside: Some(Box::new(inside)) };
         }
         let mut next = items.start as u32;
-        for [_, y, z] in region.rows() {
+        for (y, z) in region.rows() {
             for cell in self.row(y, z) + region.low[0]..self.row(y, z) + region.high[0] {
                 self.next[cell] = next;
                 next += self.counts[cell];
@@ -141,11 +140,11 @@ impl Cells {
 
     /// The cheapest cut that leaves enough on both sides.
     fn best_cut(&self, region: Region) -> Option<Cut> {
-        let mut slabs = [[Slab::EMPTY; MOST_ALONG]; 3];
-        for [_, y, z] in region.rows() {
+        let mut slabs = [[Heap::EMPTY; MOST_ALONG]; 3];
+        for (y, z) in region.rows() {
             for x in region.low[0]..region.high[0] {
                 let cell = self.row(y, z) | x;
-                let slab = Slab { count: self.counts[cell], around: self.boxes[cell] };
+                let slab = Heap { count: self.counts[cell] as usize, around: self.boxes[cell] };
                 if slab.count > 0 {
                     slabs[0][x].join(&slab);
                     slabs[1][y].join(&slab);
@@ -156,19 +155,19 @@ impl Cells {
         let (mut best, mut least) = (None, f32::INFINITY);
         for (axis, slabs) in slabs.iter().enumerate() {
             let cells = region.low[axis]..region.high[axis];
-            let mut right = [Slab::EMPTY; MOST_ALONG + 1];
+            let mut right = [Heap::EMPTY; MOST_ALONG + 1];
             for at in cells.clone().rev() {
                 right[at] = right[at + 1];
                 right[at].join(&slabs[at]);
             }
-            let mut left = Slab::EMPTY;
+            let mut left = Heap::EMPTY;
             for at in cells.start + 1..cells.end {
                 left.join(&slabs[at - 1]);
                 let cost = left.cost() + right[at].cost();
-                let enough = left.count.min(right[at].count) as usize >= LEAST;
+                let enough = left.count.min(right[at].count) >= LEAST;
                 if enough && cost < least {
                     least = cost;
-                    best = Some(Cut { axis, at, count: left.count as usize });
+                    best = Some(Cut { axis, at, count: left.count });
                 }
             }
         }
@@ -184,10 +183,10 @@ struct Region {
 }
 
 impl Region {
-    /// The first cell of each row along the first axis.
-    fn rows(self) -> impl Iterator<Item = [usize; 3]> {
-        let Self { low: [x, low_y, low_z], high: [_, high_y, high_z] } = self;
-        (low_z..high_z).flat_map(move |z| (low_y..high_y).map(move |y| [x, y, z]))
+    /// Along the other two axes, where its rows along the first axis are.
+    fn rows(self) -> impl Iterator<Item = (usize, usize)> {
+        let Self { low: [_, low_y, low_z], high: [_, high_y, high_z] } = self;
+        (low_z..high_z).flat_map(move |z| (low_y..high_y).map(move |y| (y, z)))
     }
 }
 
@@ -198,42 +197,12 @@ struct Cut {
     count: usize,
 }
 
-/// What is in some cells.
-#[derive(Clone, Copy)]
-struct Slab {
-    count: u32,
-    around: Around,
-}
-
-impl Slab {
-    const EMPTY: Self = Self { count: 0, around: Around::NOTHING };
-
-    #[inline(always)]
-    fn join(&mut self, other: &Self) {
-        self.count += other.count;
-        self.around.join(&other.around);
-    }
-
-    fn cost(&self) -> f32 {
-        self.count.div_ceil(WIDTH as u32) as f32 * self.around.half_area()
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use glam::Vec3A;
     use proptest::prelude::*;
 
     use super::*;
-    use crate::occlusion::clusters::divide::places_of;
-
-    fn items(places: &[(u8, u8, u8)]) -> Vec<Item> {
-        let item = |(id, &(x, y, z)): (usize, &(u8, u8, u8))| {
-            let low = Vec3A::new(f32::from(x), f32::from(y), f32::from(z));
-            Item::new([low, low, low + 0.5], id as u32)
-        };
-        places.iter().enumerate().map(item).collect()
-    }
+    use crate::occlusion::clusters::divide::{items_at, places_of};
 
     /// Its smallest parts, having looked whether each consists of its two.
     fn leaves(part: &Part) -> Vec<Range<usize>> {
@@ -255,7 +224,7 @@ mod tests {
         fn parts_hold_all_items_once_and_none_has_few(
             places in prop::collection::vec((0u8..200, 0u8..20, 0u8..3), 1..3000),
         ) {
-            let (sorted, part) = sorted(&items(&places));
+            let (sorted, part) = sorted(&items_at(&places));
             prop_assert_eq!(part.items.clone(), 0..places.len());
             let leaves = leaves(&part);
             prop_assert!(leaves.len() == 1 || leaves.iter().all(|leaf| leaf.len() >= LEAST));
@@ -269,7 +238,7 @@ mod tests {
     fn heaps_are_parts_of_their_own() {
         let places: Vec<(u8, u8, u8)> =
             (0..900).map(|number| ([0, 90, 200][number % 3], 0, 7)).collect();
-        let (sorted, part) = sorted(&items(&places));
+        let (sorted, part) = sorted(&items_at(&places));
         let leaves = leaves(&part);
         assert_eq!(leaves.len(), 3);
         for leaf in leaves {
@@ -281,13 +250,13 @@ mod tests {
     #[test]
     fn a_few_far_away_are_no_part_of_their_own() {
         let place = |number| if number < LEAST - 1 { (200, 0, 0) } else { (0, 7, 7) };
-        let (_, part) = sorted(&items(&(0..900).map(place).collect::<Vec<_>>()));
+        let (_, part) = sorted(&items_at(&(0..900).map(place).collect::<Vec<_>>()));
         assert!(part.inside.is_none());
     }
 
     #[test]
     fn what_is_in_one_place_is_one_part() {
-        let (_, part) = sorted(&items(&[(7, 7, 7); 500]));
+        let (_, part) = sorted(&items_at(&[(7, 7, 7); 500]));
         assert!(part.inside.is_none());
     }
 }

@@ -31,9 +31,8 @@ impl Around {
 
     /// Along which axis it is longest, and how long.
     pub fn longest(&self) -> (usize, f32) {
-        let extent = self.high - self.low;
-        let axis = usize::from(extent.y > extent.x);
-        let axis = if extent.z > extent[axis] { 2 } else { axis };
+        let extent = (self.high - self.low).xyz();
+        let axis = extent.max_position();
         (axis, extent[axis])
     }
 
@@ -185,26 +184,42 @@ impl Slots {
     }
 }
 
+/// Some items: how many, and the box around them.
+#[derive(Clone, Copy)]
+pub(super) struct Heap {
+    pub count: usize,
+    pub around: Around,
+}
+
+impl Heap {
+    pub const EMPTY: Self = Self { count: 0, around: Around::NOTHING };
+
+    #[inline(always)]
+    pub fn join(&mut self, other: &Self) {
+        self.count += other.count;
+        self.around.join(&other.around);
+    }
+
+    /// What it costs the rays that meet the box, by the clusters that it takes.
+    pub fn cost(&self) -> f32 {
+        self.count.div_ceil(WIDTH) as f32 * self.around.half_area()
+    }
+}
+
 /// What is in a bin.
 #[derive(Clone, Copy)]
 struct Bin {
-    count: usize,
-    around: Around,
+    items: Heap,
     places: Around,
 }
 
 impl Bin {
-    const EMPTY: Self = Self { count: 0, around: Around::NOTHING, places: Around::NOTHING };
+    const EMPTY: Self = Self { items: Heap::EMPTY, places: Around::NOTHING };
 
     #[inline(always)]
     fn join(&mut self, other: &Self) {
-        self.count += other.count;
-        self.around.join(&other.around);
+        self.items.join(&other.items);
         self.places.join(&other.places);
-    }
-
-    fn cost(&self) -> f32 {
-        self.count.div_ceil(WIDTH) as f32 * self.around.half_area()
     }
 }
 
@@ -222,8 +237,8 @@ impl Cut {
         let mut bins = [Bin::EMPTY; BINS];
         for item in items {
             let bin = &mut bins[slots.of(item)];
-            bin.count += 1;
-            bin.around.join(&item.0);
+            bin.items.count += 1;
+            bin.items.around.join(&item.0);
             bin.places.join_place(item.place());
         }
         let mut right = [Bin::EMPTY; BINS + 1];
@@ -236,15 +251,26 @@ impl Cut {
         let mut best = None;
         for bin in 1..BINS {
             left.join(&bins[bin - 1]);
-            let cost = left.cost() + right[bin].cost();
-            if left.count > 0 && right[bin].count > 0 && cost < least {
+            let right = &right[bin];
+            let cost = left.items.cost() + right.items.cost();
+            if left.items.count > 0 && right.items.count > 0 && cost < least {
                 least = cost;
-                best =
-                    Some(Self { bin, count: left.count, sides: [left.places, right[bin].places] });
+                let count = left.items.count;
+                best = Some(Self { bin, count, sides: [left.places, right.places] });
             }
         }
         best
     }
+}
+
+/// Cubes at these places, of which many may share one.
+#[cfg(test)]
+pub(super) fn items_at(places: &[(u8, u8, u8)]) -> Vec<Item> {
+    let item = |(id, &(x, y, z)): (usize, &(u8, u8, u8))| {
+        let low = Vec3A::new(f32::from(x), f32::from(y), f32::from(z));
+        Item::new([low, low, low + 0.5], id as TriangleId)
+    };
+    places.iter().enumerate().map(item).collect()
 }
 
 #[cfg(test)]
@@ -252,15 +278,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-
-    /// Items of which many share a place.
-    fn items(places: &[(u8, u8, u8)]) -> Vec<Item> {
-        let item = |(id, &(x, y, z)): (usize, &(u8, u8, u8))| {
-            let low = Vec3A::new(f32::from(x), f32::from(y), f32::from(z));
-            Item::new([low, low, low + 0.5], id as TriangleId)
-        };
-        places.iter().enumerate().map(item).collect()
-    }
 
     fn holds(around: &Around, place: Vec4) -> bool {
         around.low.xyz().cmple(place.xyz()).all() && place.xyz().cmple(around.high.xyz()).all()
@@ -271,7 +288,7 @@ mod tests {
         fn a_range_is_divided_into_whole_clusters_and_nothing_is_lost(
             places in prop::collection::vec((0u8..200, 0u8..20, 0u8..3), WIDTH + 1..1500),
         ) {
-            let mut items = items(&places);
+            let mut items = items_at(&places);
             let around = places_of(&items);
             let Divided { at, sides } = divide(&mut items, &around);
             prop_assert!(at % WIDTH == 0 && at > 0 && at < items.len());
@@ -288,7 +305,7 @@ mod tests {
     fn two_heaps_are_taken_apart_but_for_a_part_of_a_cluster() {
         let places: Vec<(u8, u8, u8)> =
             (0..603).map(|number| (if number % 3 == 0 { 200 } else { 0 }, 0, 0)).collect();
-        let mut items = items(&places);
+        let mut items = items_at(&places);
         let around = places_of(&items);
         let Divided { at, .. } = divide(&mut items, &around);
         let strays =
@@ -298,7 +315,7 @@ mod tests {
 
     #[test]
     fn items_in_one_place_are_halved() {
-        let mut items = items(&[(7, 7, 7); 320]);
+        let mut items = items_at(&[(7, 7, 7); 320]);
         let around = places_of(&items);
         assert_eq!(divide(&mut items, &around).at, 160);
     }

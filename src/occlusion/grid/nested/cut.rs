@@ -22,9 +22,7 @@ pub(super) fn cut(extents: &[Extent], list: &mut [u32], size: usize) {
         return;
     }
     let Extent { low, high } = middles(extents, list);
-    let extent = high - low;
-    let axis = usize::from(extent.y > extent.x);
-    let axis = if extent.z > extent[axis] { 2 } else { axis };
+    let axis = (high - low).max_position();
     let place = |index: u32| extents[index as usize].middle()[axis];
     list.sort_unstable_by(|&a, &b| place(a).total_cmp(&place(b)));
     let (left, right) = list.split_at_mut(cheapest(extents, list, size));

@@ -38,7 +38,8 @@ impl Extent {
     }
 
     pub fn half_area(self) -> f32 {
-        half_area(self.high - self.low)
+        let [x, y, z] = (self.high - self.low).to_array();
+        x * y + y * z + z * x
     }
 
     /// What of it is in another one, with padding all around.
@@ -82,10 +83,6 @@ impl Lattice {
         let place = ((point - self.min) * self.inverse).max(Vec3A::ZERO).min(self.last);
         place.as_uvec3().dot(UVec3::new(1, MOST, MOST * MOST))
     }
-}
-
-fn half_area(sides: Vec3A) -> f32 {
-    sides.x * sides.y + sides.y * sides.z + sides.z * sides.x
 }
 
 #[cfg(test)]
