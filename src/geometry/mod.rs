@@ -1,6 +1,7 @@
 //! Rays, triangles, boxes: the bits every engine is given.
 
 mod bounds;
+mod hilbert;
 pub mod intersect;
 pub mod lanes;
 mod ray;
@@ -8,5 +9,6 @@ pub mod surface;
 mod triangles;
 
 pub use bounds::Bounds;
+pub use hilbert::along_hilbert;
 pub use ray::Ray;
 pub use triangles::{Triangle, TriangleId, Triangles, is_finite};

@@ -1,5 +1,7 @@
 //! The order in which pixels are rendered, and how it is cut into units of work.
 
+use crate::geometry::along_hilbert;
+
 /// Pixels along the side of the smallest and the largest tiles.
 const SIDES: [u32; 2] = [8, 64];
 
@@ -17,7 +19,7 @@ pub enum Order {
     Scanline,
     /// Row by row, every second one from right to left (§8 of the paper).
     Serpentine,
-    /// Square tiles of some thousand samples in Morton order, and so the pixels within.
+    /// Square tiles of some thousand samples along a Hilbert curve, and so the pixels within.
     #[default]
     Tiles,
 }
@@ -76,11 +78,12 @@ fn tiles(width: u32, height: u32, side: u32) -> Vec<Vec<Place>> {
     let (across, down) = (width.div_ceil(side), height.div_ceil(side));
     let mut corners: Vec<Place> =
         (0..down).flat_map(|y| (0..across).map(move |x| (x, y))).collect();
-    corners.sort_by_key(|&(x, y)| morton(x, y));
+    let levels = across.max(down).next_power_of_two().ilog2();
+    corners.sort_by_key(|&(x, y)| along_hilbert([x], [y], levels));
     let within: Vec<Place> = {
         let mut places: Vec<Place> =
             (0..side).flat_map(|y| (0..side).map(move |x| (x, y))).collect();
-        places.sort_by_key(|&(x, y)| morton(x, y));
+        places.sort_by_key(|&(x, y)| along_hilbert([x], [y], side.ilog2()));
         places
     };
     corners
@@ -90,24 +93,6 @@ fn tiles(width: u32, height: u32, side: u32) -> Vec<Vec<Place>> {
             places.filter(|&(x, y)| x < width && y < height).collect()
         })
         .collect()
-}
-
-/// The bits of x and y interleaved: places near each other on the Z-order curve are near each other.
-fn morton(x: u32, y: u32) -> u64 {
-    let spread = |v: u32| {
-        let mut v = u64::from(v);
-        for (shift, mask) in [
-            (16, 0x0000_ffff_0000_ffff),
-            (8, 0x00ff_00ff_00ff_00ff),
-            (4, 0x0f0f_0f0f_0f0f_0f0f),
-            (2, 0x3333_3333_3333_3333),
-            (1, 0x5555_5555_5555_5555),
-        ] {
-            v = (v | v << shift) & mask;
-        }
-        v
-    };
-    spread(x) | spread(y) << 1
 }
 
 #[cfg(test)]
@@ -124,6 +109,15 @@ mod tests {
                     (0..width).flat_map(|x| (0..height).map(move |y| (x, y))).collect();
                 assert_eq!(places, all, "{order:?} {width}x{height}");
             }
+        }
+    }
+
+    #[test]
+    fn a_pixel_of_a_whole_tile_lies_beside_the_one_before_it() {
+        for unit in Order::Tiles.units([64, 128], 8, 3) {
+            let step =
+                |pair: &[Place]| pair[0].0.abs_diff(pair[1].0) + pair[0].1.abs_diff(pair[1].1);
+            assert!(unit.len() > 1 && unit.windows(2).all(|pair| step(pair) == 1));
         }
     }
 

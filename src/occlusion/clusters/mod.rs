@@ -44,6 +44,12 @@ impl Cluster {
         &self.ids
     }
 
+    /// Whether a triangle is the one before it, once more.
+    #[inline(always)]
+    pub(crate) fn repeats(&self, lane: usize) -> bool {
+        lane > 0 && self.ids[lane] == self.ids[lane - 1]
+    }
+
     /// A triangle that the ray meets.
     #[inline(always)]
     pub(crate) fn meets<T: TriangleTest, L: Lanes>(

@@ -53,6 +53,22 @@ impl Node {
         if child & CLUSTER == 0 { Child::Node(child) } else { Child::Cluster(child & !CLUSTER) }
     }
 
+    /// The boxes that hold clusters: a bit each.
+    #[inline(always)]
+    pub fn clusters(&self) -> u32 {
+        let mut bits = 0;
+        for (slot, child) in self.children.iter().enumerate() {
+            bits |= (child / CLUSTER) << slot;
+        }
+        bits
+    }
+
+    /// The number of what a box holds, a node or a cluster.
+    #[inline(always)]
+    pub fn number(&self, slot: usize) -> u32 {
+        self.children[slot] & !CLUSTER
+    }
+
     /// Of its clusters, the sum of the longest sides of the boxes.
     pub fn sum_of_cluster_extents(&self) -> f64 {
         let clusters = (0..WIDTH).filter(|&slot| self.children[slot] & CLUSTER != 0);

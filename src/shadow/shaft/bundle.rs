@@ -379,7 +379,7 @@ pub(super) fn mean_extent(boxes: &[OriginBox], asked: &[u16]) -> f32 {
 }
 
 /// The packets of each part of the heap, a bit each.
-const PACKETS_OF: [u16; 2 * PACKETS] = {
+pub(super) const PACKETS_OF: [u16; 2 * PACKETS] = {
     let mut bits = [0; 2 * PACKETS];
     let mut part = 1;
     while part < 2 * PACKETS {

@@ -20,11 +20,14 @@
 
 mod bundle;
 mod cast;
+mod cluster;
 mod columns;
 mod frustum;
+mod kept;
 mod order;
 mod planes;
 mod rays;
+
 mod view;
 mod walk;
 

@@ -1,22 +1,22 @@
-//! Queries in the order of the directions in which their light sees them: along a Morton curve.
+//! Queries in the order of the directions in which their light sees them: along Hilbert's curve.
 //!
 //! What a mirror or a curved surface sees next lies all over the scene; sorted, neighbours in the order are
 //! next to each other as the light sees them, and their shafts are thin. Two that are in line share all of the nearer one's way:
 //! so it is directions that count (`view`), not places. The rectangle of all is halved along its longer side, the half likewise, and so
-//! on: so a narrow one is cut into as many cells as a square. Queries in one cell keep their order.
-//!
-//! Morton: A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing. IBM, 1966.
+//! on: so a narrow one is cut into as many cells as a square, squares of them in a row. A curve goes through each square, and
+//! ends where the next one begins. Queries in one cell keep their order.
 
 use super::bundle::{OriginBox, PACKET, Source};
 use super::columns::{Columns, Row};
 use super::view::Perspective;
+use crate::geometry::along_hilbert;
 use crate::geometry::lanes::{Lanes, LanesJob, Sixteen};
 
-/// So often is the rectangle of all halved: a bit of a key each.
-const BITS: usize = 13;
+/// So often is the rectangle of all halved at most, a bit of a key each: the counts of all cells stay in the nearest cache.
+const MOST_BITS: u32 = 13;
 
-/// Cells, so many that the counts stay in the nearest cache.
-const CELLS: usize = 1 << BITS;
+/// And at least: so the curve is one.
+const LEAST_BITS: u32 = 6;
 
 /// Which queries, in which order; kept from one time to the next.
 #[derive(Default)]
@@ -66,25 +66,27 @@ impl LanesJob for SortByDirection<'_> {
         }
         let low = [low[0].least(), low[1].least()];
         let high = [high[0].greatest(), high[1].greatest()];
-        let curve = Curve::through(low, high);
+        // About as many cells as queries: with more, clearing and adding up their counts would take longer than sorting.
+        let bits = (packets.len() * PACKET).ilog2().clamp(LEAST_BITS, MOST_BITS);
+        let curve = Curve::through(low, high, bits);
         cells.resize(packets.len(), [0; PACKET]);
         counts.clear();
-        counts.resize(CELLS, 0);
-        let counts: &mut [u32; CELLS] = counts.as_mut_slice().try_into().expect("so many cells");
+        counts.resize(1 << bits, 0);
+        let last = (1 << bits) - 1;
         let mut count = 0;
         for ((cells, &packet), seen) in cells.iter_mut().zip(&*packets).zip(&*seen) {
             *cells = curve.cells(seen);
-            each(asked[packet as usize], |lane| counts[usize::from(cells[lane]) % CELLS] += 1);
+            each(asked[packet as usize], |lane| counts[usize::from(cells[lane]) & last] += 1);
             count += asked[packet as usize].count_ones() as usize;
         }
         let mut sum = 0;
-        for count in &mut *counts {
+        for count in counts.iter_mut() {
             sum += std::mem::replace(count, sum);
         }
         places.resize(count, 0);
         for (cells, &packet) in cells.iter().zip(&*packets) {
             each(asked[packet as usize], |lane| {
-                let next = &mut counts[usize::from(cells[lane]) % CELLS];
+                let next = &mut counts[usize::from(cells[lane]) & last];
                 places[*next as usize] = packet * PACKET as u32 + lane as u32;
                 *next += 1;
             });
@@ -111,15 +113,15 @@ struct Curve {
     low: [f32; 2],
     /// Cells for a unit of way, by axis.
     scale: [f32; 2],
-    /// Halvings of each axis. Those of the longer one that the other has not come first, then both in turns.
+    /// Halvings of each axis. Those of the longer one that the other has not make squares in a row.
     halvings: [u32; 2],
 }
 
 impl Curve {
-    fn through(low: [f32; 2], high: [f32; 2]) -> Self {
+    fn through(low: [f32; 2], high: [f32; 2], bits: u32) -> Self {
         let mut size = [high[0] - low[0], high[1] - low[1]];
         let mut halvings = [0; 2];
-        for _ in 0..BITS {
+        for _ in 0..bits {
             let longer = usize::from(size[1] > size[0]);
             size[longer] *= 0.5;
             halvings[longer] += 1;
@@ -142,28 +144,24 @@ impl Curve {
             for (place, coordinate) in places.iter_mut().zip(seen[axis].0) {
                 let whole = (coordinate - self.low[axis]) * self.scale[axis];
                 let whole = if whole < last { whole } else { last };
-                *place = (whole + WHOLE).to_bits() & ((1 << BITS) - 1);
+                *place = (whole + WHOLE).to_bits() & ((1 << MOST_BITS) - 1);
             }
         }
         let longer = usize::from(self.halvings[1] > self.halvings[0]);
         let both = self.halvings[1 - longer];
+        // Squares in a row, and the curve through each.
+        let (mut squares, mut within) = (places[longer], places[longer]);
+        for lane in 0..PACKET {
+            squares[lane] = squares[lane] >> both << (2 * both);
+            within[lane] &= (1 << both) - 1;
+        }
+        let within = along_hilbert(within, places[1 - longer], both);
         let mut cells = [0; PACKET];
         for lane in 0..PACKET {
-            let (long, short) = (places[longer][lane], places[1 - longer][lane]);
-            let before = long >> both << (2 * both);
-            let in_turns = spread(long & ((1 << both) - 1)) << 1 | spread(short);
-            cells[lane] = (before | in_turns) as u16;
+            cells[lane] = (squares[lane] | within[lane]) as u16;
         }
         cells
     }
-}
-
-/// Bit `i` to bit `2 i`, of eight bits.
-#[inline(always)]
-fn spread(bits: u32) -> u32 {
-    let bits = (bits | bits << 4) & 0x0f0f;
-    let bits = (bits | bits << 2) & 0x3333;
-    (bits | bits << 1) & 0x5555
 }
 
 /// Added to a number below 2¹² it leaves the number, rounded, in the lowest bits of the sum.
@@ -202,19 +200,19 @@ mod tests {
 
     #[test]
     fn the_longer_side_is_halved_first_and_narrow_rectangles_are_cut_as_often() {
-        let curve = Curve::through([0.0, 0.0], [2.0, 9.0]);
+        let curve = Curve::through([0.0, 0.0], [2.0, 9.0], 13);
         assert_eq!(curve.halvings, [5, 8]);
         let mut seen = [Row::ZERO; 2];
         for (lane, [x, y]) in
-            [[0.9, 0.2], [0.1, 1.2], [0.1, 4.4], [2.0, 9.0]].into_iter().enumerate()
+            [[0.9, 0.2], [0.1, 1.2], [0.1, 4.4], [0.0, 9.0]].into_iter().enumerate()
         {
             (seen[0].0[lane], seen[1].0[lane]) = (x, y);
         }
         let cells = curve.cells(&seen);
         assert!(cells[0] < cells[1] && cells[1] < cells[2] && cells[2] < cells[3], "{cells:?}");
-        assert_eq!(cells[3], (CELLS - 1) as u16);
-        let line = Curve::through([0.0, 1.0], [0.5, 1.0]);
-        assert_eq!(line.halvings, [BITS as u32, 0], "nothing to halve");
+        assert_eq!(cells[3], (1 << 13) - 1);
+        let line = Curve::through([0.0, 1.0], [0.5, 1.0], 13);
+        assert_eq!(line.halvings, [13, 0], "nothing to halve");
     }
 
     #[test]
@@ -236,8 +234,8 @@ mod tests {
             };
             let apart = |pair: &[u32]| seen(pair[0]).distance(seen(pair[1]));
             let mean = places.windows(2).map(apart).sum::<f32>() / 999.0;
-            // Places are 1/50 apart; in the old order, and along a curve through space, neighbours are ten and two times as far.
-            assert!(mean < 0.026, "{arithmetic:?}: {mean}");
+            // Places are 1/50 apart, four in line. Along Morton's curve it is 0.0146, in the old order twenty times as much.
+            assert!(mean < 0.013, "{arithmetic:?}: {mean}");
         }
     }
 

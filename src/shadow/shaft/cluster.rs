@@ -1,0 +1,150 @@
+//! What a bundle comes to: the triangles of a cluster, tested for a part of the bundle, for a packet, or for few of its rays.
+
+use glam::Vec3;
+
+use super::bundle::{Bundle, PACKET, PACKETS, PACKETS_OF, packets_of};
+use super::cast::{Cast, Judged, Shadow};
+use super::kept::Kept;
+use super::planes::Ground;
+use super::walk::Around;
+use crate::exact::certified;
+use crate::geometry::TriangleId;
+use crate::geometry::lanes::{Lanes, Sixteen};
+use crate::occlusion::{Tally, WIDTH};
+
+/// Of fewer packets, boxes are not looked at before a triangle is cast.
+const WORTH_JUDGING: usize = 4;
+
+/// Tests for a bundle.
+pub(super) struct Tests<'a, 'b> {
+    pub bundle: &'a mut Bundle,
+    pub kept: &'a mut Kept,
+    pub ground: &'a Ground,
+    pub around: &'a Around<'b>,
+    pub tally: &'a mut Tally,
+}
+
+impl Tests<'_, '_> {
+    /// Tests the triangles of a cluster for a part of the bundle that has several packets.
+    #[inline(always)]
+    pub fn part<L: Lanes>(self, part: usize, number: u32) {
+        let Self { bundle, kept, ground, around, tally } = self;
+        let cluster = &around.clusters.all()[number as usize];
+        let planes = kept.of::<L>(ground, number, cluster);
+        let mut candidates = planes.candidates::<L>(&bundle.bases[part], &bundle.boxes[part]);
+        while candidates != 0 {
+            let lane = candidates.trailing_zeros() as usize;
+            candidates &= candidates - 1;
+            if !cluster.repeats(lane) {
+                let shadow = Shadow::<L::Sixteen>::of(planes, lane, cluster.ids()[lane]);
+                cast(bundle, part, &shadow, ground, around, tally);
+            }
+        }
+    }
+
+    /// Tests them for some rays of a packet.
+    #[inline(always)]
+    pub fn packet<L: Lanes>(self, packet: usize, rays: u16, number: u32) {
+        let Self { bundle, kept, ground, around, tally } = self;
+        let cluster = &around.clusters.all()[number as usize];
+        let planes = kept.of::<L>(ground, number, cluster);
+        let part = PACKETS + packet;
+        let mut candidates = planes.candidates::<L>(&bundle.bases[part], &bundle.boxes[part]);
+        while candidates != 0 {
+            let lane = candidates.trailing_zeros() as usize;
+            candidates &= candidates - 1;
+            if !cluster.repeats(lane) {
+                let shadow = Shadow::<L::Sixteen>::of(planes, lane, cluster.ids()[lane]);
+                cast_on(bundle, packet, rays, &shadow, around, tally);
+            }
+        }
+    }
+
+    /// Tests them for few rays of a packet, one by one.
+    #[inline(always)]
+    pub fn few<L: Lanes>(self, packet: usize, mut rays: u16, number: u32) {
+        let Self { bundle, kept, ground, around, tally } = self;
+        tally.triangle_tests += WIDTH as u64 * u64::from(rays.count_ones());
+        let cluster = &around.clusters.all()[number as usize];
+        let planes = kept.of::<L>(ground, number, cluster);
+        let mut blocked = 0;
+        while rays != 0 {
+            let lane = rays.trailing_zeros() as usize;
+            rays &= rays - 1;
+            let [x, y, z] = &bundle.origins[packet];
+            let origin = Vec3::new(x.0[lane], y.0[lane], z.0[lane]);
+            let (certain, mut doubtful) = planes.cast_on_one::<L>(origin);
+            let mut is_blocked = certain != 0;
+            while !is_blocked && doubtful != 0 {
+                let triangle = cluster.ids()[doubtful.trailing_zeros() as usize];
+                doubtful &= doubtful - 1;
+                is_blocked = settle(packet * PACKET + lane, triangle, around);
+            }
+            blocked |= u16::from(is_blocked) << lane;
+        }
+        bundle.block(packet, blocked);
+    }
+}
+
+/// Casts the shadow of one triangle on a part of the bundle.
+#[inline(always)]
+fn cast<S: Sixteen>(
+    bundle: &mut Bundle,
+    part: usize,
+    shadow: &Shadow<S>,
+    ground: &Ground,
+    around: &Around,
+    tally: &mut Tally,
+) {
+    let (first, last) = packets_of(part);
+    // Without a side the signs of planes say nothing by themselves.
+    if shadow.unsided || last - first < WORTH_JUDGING {
+        for packet in first..last {
+            cast_on(bundle, packet, u16::MAX, shadow, around, tally);
+        }
+        return;
+    }
+    let Judged { touched, covered } = shadow.judge(bundle.beside(ground.centre));
+    let mut touched = touched & PACKETS_OF[part];
+    while touched != 0 {
+        let packet = touched.trailing_zeros() as usize;
+        touched &= touched - 1;
+        if covered & (1 << packet) != 0 {
+            bundle.block(packet, u16::MAX);
+        } else {
+            cast_on(bundle, packet, u16::MAX, shadow, around, tally);
+        }
+    }
+}
+
+/// Casts it on some queries of a packet.
+#[inline(always)]
+fn cast_on<S: Sixteen>(
+    bundle: &mut Bundle,
+    packet: usize,
+    rays: u16,
+    shadow: &Shadow<S>,
+    around: &Around,
+    tally: &mut Tally,
+) {
+    let open = bundle.open[packet] & rays;
+    if open == 0 {
+        return;
+    }
+    tally.triangle_tests += u64::from(open.count_ones());
+    let Cast { mut blocked, mut doubtful } = shadow.cast(&bundle.origins[packet], open);
+    while doubtful != 0 {
+        let query = doubtful.trailing_zeros();
+        doubtful &= doubtful - 1;
+        if settle(packet * PACKET + query as usize, shadow.triangle, around) {
+            blocked |= 1 << query;
+        }
+    }
+    bundle.block(packet, blocked);
+}
+
+/// Decides one triangle for one query.
+#[cold]
+fn settle(query: usize, id: TriangleId, around: &Around) -> bool {
+    certified::blocks(around.queries.ray(query), &around.triangles.get(id))
+}

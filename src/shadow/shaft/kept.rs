@@ -1,0 +1,44 @@
+//! Planes of clusters, kept: parts of a bundle come to the same clusters, and so do bundles in a row.
+
+use super::planes::{Ground, Planes};
+use crate::geometry::lanes::Lanes;
+use crate::occlusion::Cluster;
+
+/// Clusters whose planes are kept. 130 KiB.
+const KEPT: usize = 256;
+
+const NOBODY: u32 = u32::MAX;
+
+/// Planes of clusters that were tested of late.
+pub(super) struct Kept {
+    planes: [Planes; KEPT],
+    /// Whose they are.
+    clusters: [u32; KEPT],
+    /// The ground that they are for.
+    ground: Option<Ground>,
+}
+
+impl Kept {
+    pub const fn none() -> Self {
+        Self { planes: [const { Planes::EMPTY }; KEPT], clusters: [NOBODY; KEPT], ground: None }
+    }
+
+    /// From now on, planes are for this ground.
+    pub fn stand_on(&mut self, ground: &Ground) {
+        if self.ground != Some(*ground) {
+            self.ground = Some(*ground);
+            self.clusters = [NOBODY; KEPT];
+        }
+    }
+
+    /// The planes of a cluster, which has this number.
+    #[inline(always)]
+    pub fn of<L: Lanes>(&mut self, ground: &Ground, number: u32, cluster: &Cluster) -> &Planes {
+        let place = number as usize % KEPT;
+        if self.clusters[place] != number {
+            self.clusters[place] = number;
+            self.planes[place].set::<L>(ground, cluster);
+        }
+        &self.planes[place]
+    }
+}
