@@ -55,6 +55,11 @@ pub fn verdict(ray: &Ray, triangle: &Triangle) -> Verdict {
 #[must_use]
 pub fn decide(ray: &Ray, triangle: &Triangle) -> (Verdict, Stage) {
     let doubles = Doubles::new(ray, triangle);
+    // Most of what is asked here is the triangle that a ray starts on: its plane is behind, which needs no edges.
+    let (start, slope) = doubles.start_and_slope();
+    if start.sign().sign * slope.sign().sign < 0 {
+        return (Verdict::Clear, Stage::Double);
+    }
     let edges = doubles.edges();
     let signs = edges.map(|edge| edge.sign);
     if is_mixed(signs) {
@@ -148,12 +153,16 @@ impl Doubles {
         [edge(a, b), edge(b, c), edge(c, a)]
     }
 
+    #[inline(always)]
+    fn start_and_slope(&self) -> (Bounded<f64>, Bounded<f64>) {
+        let normal = Bounded::cross(self.sides[0], self.sides[1]);
+        (normal.dot(self.corners[0]), normal.dot(self.direction))
+    }
+
     /// The signs of start and stop.
     #[inline(always)]
     fn interval(&self) -> [Sign; 2] {
-        let normal = Bounded::cross(self.sides[0], self.sides[1]);
-        let start = normal.dot(self.corners[0]);
-        let slope = normal.dot(self.direction);
+        let (start, slope) = self.start_and_slope();
         let stop = if self.end < f64::INFINITY {
             Bounded {
                 value: self.end * slope.value - start.value,
@@ -274,4 +283,30 @@ fn cross(a: &[Expansion<2>; 3], b: &[Expansion<2>; 3]) -> [Expansion<16>; 3] {
 fn slope(direction: [f64; 3], normal: &[Expansion<16>; 3]) -> Expansion<96> {
     let [x, y, z] = [0, 1, 2].map(|i| normal[i].times::<32>(direction[i]));
     x.plus::<32, 64>(&y).plus(&z)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn a_plane_behind_the_origin_needs_no_edges() {
+        let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        // The line passes through a corner, in which two edges are zero: f64 alone cannot say that they are.
+        let direction = Vec3::new(0.1, 0.3, 0.7);
+        let ray = |origin| Ray::towards(origin, direction);
+        assert_eq!(decide(&ray(direction), &triangle), (Verdict::Clear, Stage::Double));
+        assert_eq!(decide(&ray(-direction), &triangle), (Verdict::Blocked, Stage::Expansion));
+        for corners in [[0, 1, 2], [0, 2, 1]] {
+            let triangle = corners.map(|corner| triangle[corner]);
+            for direction in [direction, -direction] {
+                let ray = Ray { direction, ..ray(Vec3::new(0.2, 0.2, 1e-6)) };
+                let expected = verdict_by_expansions(&ray, &triangle);
+                assert_eq!(verdict(&ray, &triangle), expected);
+                assert_eq!(expected == Verdict::Blocked, direction.z < 0.0);
+            }
+        }
+    }
 }

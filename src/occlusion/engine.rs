@@ -162,10 +162,9 @@ where
     Wanted: Fn(TriangleId) -> bool,
     Hit: FnMut(TriangleId) -> ControlFlow<()>,
 {
-    /// Goes through what is claimed of up to a vector full of triangles. Most are missed, and what a call needs
-    /// is not to be prepared for them.
-    #[cold]
-    #[inline(never)]
+    /// Goes through what is claimed of up to a vector full of triangles. Inlined, with only the decision of what is open out of
+    /// line: what a call is handed has to be in memory, and would be written for each vector, though most are missed.
+    #[inline(always)]
     fn settle(&mut self, ids: &[TriangleId], claims: Claims) -> ControlFlow<()> {
         let used = u32::MAX >> (32 - ids.len());
         let mut candidates = (claims.certain | claims.open) & used;
@@ -174,14 +173,19 @@ where
             candidates &= candidates - 1;
             let id = ids[lane as usize];
             let certain = claims.certain & (1 << lane) != 0;
-            if (self.wanted)(id)
-                && (certain || T::settle(self.ray, &self.triangles.get(id), self.triangles.slack()))
-            {
+            if (self.wanted)(id) && (certain || decide::<T>(self.triangles, self.ray, id)) {
                 (self.hit)(id)?;
             }
         }
         ControlFlow::Continue(())
     }
+}
+
+/// Decides what the vector test left open of a triangle.
+#[cold]
+#[inline(never)]
+fn decide<T: TriangleTest>(triangles: &Triangles, ray: &Ray, id: TriangleId) -> bool {
+    T::settle(ray, &triangles.get(id), triangles.slack())
 }
 
 impl<T, L, Wanted, Hit> Kernel for TestEach<'_, T, L, Wanted, Hit>
