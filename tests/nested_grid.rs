@@ -164,3 +164,20 @@ fn many_rays_are_answered_and_counted_as_one_by_one() {
         assert_eq!(together, apart);
     }
 }
+
+#[test]
+fn what_lies_behind_the_nearest_hit_is_left_out() {
+    let mesh = soup(20_000, 0.1, 14);
+    let grid = engine(Backend::Grid, &over(&mesh));
+    let mut random = Random(15);
+    let (mut tally, mut hits) = (Tally::default(), 0);
+    for _ in 0..1000 {
+        let from = 3.0 * random.in_cube(1.0).normalize();
+        let ray = Ray::towards(from, random.in_cube(0.3) - from);
+        hits += usize::from(grid.nearest(&ray, &mut tally).is_some());
+    }
+    assert!(hits > 900, "{hits}");
+    // 6.0 eights a ray. In the order in which they are stored it would be 14.5, and 7.6 if what is left of the grids around were not
+    // looked at again.
+    assert!(tally.cells < 7000, "{}", tally.cells);
+}

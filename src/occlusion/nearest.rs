@@ -9,7 +9,7 @@ use super::engine::{Engine, Job, TestEach, TestEight, admit};
 use super::walk::walk_any;
 use super::{Cell, Eight, Tally, Visit, Walk};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
-use crate::geometry::lanes::Lanes;
+use crate::geometry::lanes::{Kernel, Lanes};
 use crate::geometry::{Ray, Triangle, TriangleId, Triangles};
 
 /// Where a ray first meets a triangle.
@@ -69,24 +69,27 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for NearestHit<'_> {
             return None;
         }
         tally.traversals += 1;
-        let mut visitor = NearestVisitor::<T, L> {
-            triangles: engine.triangles(),
-            ray,
-            lanes: RayLanes::of::<T>(ray),
-            tally,
-            best: None,
-            test: PhantomData,
-        };
+        let triangles = engine.triangles();
         if W::INLINED && L::COUNT > 4 {
-            engine.walk().walk::<L, _>(ray, &mut visitor);
+            if W::IN_PLACE {
+                let mut visitor = NearestVisitor::<T, L, true>::new(triangles, ray, tally);
+                engine.walk().walk::<L, _>(ray, &mut visitor);
+                visitor.best
+            } else {
+                let mut visitor = NearestVisitor::<T, L, false>::new(triangles, ray, tally);
+                engine.walk().walk::<L, _>(ray, &mut visitor);
+                visitor.best
+            }
         } else {
+            let mut visitor = NearestVisitor::<T, L, false>::new(triangles, ray, tally);
             walk_any::<W, L>(engine.walk(), ray, &mut visitor);
+            visitor.best
         }
-        visitor.best
     }
 }
 
-struct NearestVisitor<'a, T, L> {
+/// `IN_PLACE`: see [`Walk::IN_PLACE`].
+struct NearestVisitor<'a, T, L, const IN_PLACE: bool> {
     triangles: &'a Triangles,
     ray: &'a Ray,
     lanes: RayLanes<L>,
@@ -95,7 +98,13 @@ struct NearestVisitor<'a, T, L> {
     test: PhantomData<T>,
 }
 
-impl<'a, T: TriangleTest, L: Lanes> NearestVisitor<'a, T, L> {
+impl<'a, T: TriangleTest, L: Lanes, const IN_PLACE: bool> NearestVisitor<'a, T, L, IN_PLACE> {
+    #[inline(always)]
+    fn new(triangles: &'a Triangles, ray: &'a Ray, tally: &'a mut Tally) -> Self {
+        let lanes = RayLanes::of::<T>(ray);
+        Self { triangles, ray, lanes, tally, best: None, test: PhantomData }
+    }
+
     /// The test of some triangles, counted.
     #[inline(always)]
     fn test<'v>(
@@ -105,8 +114,8 @@ impl<'a, T: TriangleTest, L: Lanes> NearestVisitor<'a, T, L> {
         'v,
         T,
         L,
-        impl Fn(TriangleId) -> bool + use<'v, 'a, T, L>,
-        impl FnMut(TriangleId) -> ControlFlow<()> + use<'v, 'a, T, L>,
+        impl Fn(TriangleId) -> bool + use<'v, 'a, T, L, IN_PLACE>,
+        impl FnMut(TriangleId) -> ControlFlow<()> + use<'v, 'a, T, L, IN_PLACE>,
     > {
         let Self { triangles, ray, lanes, tally, best, .. } = self;
         tally.cells += 1;
@@ -131,16 +140,17 @@ impl<'a, T: TriangleTest, L: Lanes> NearestVisitor<'a, T, L> {
     }
 }
 
-impl<T: TriangleTest, L: Lanes> Visit for NearestVisitor<'_, T, L> {
+impl<T: TriangleTest, L: Lanes, const IN_PLACE: bool> Visit for NearestVisitor<'_, T, L, IN_PLACE> {
     #[inline(always)]
     fn visit(&mut self, _: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
-        // A culler may have come here through a closure of its own: see `lanes`.
-        L::run(self.test(ids))
+        let job = self.test(ids);
+        if IN_PLACE { job.run() } else { L::run(job) }
     }
 
     #[inline(always)]
     fn visit_eight(&mut self, _: Cell, ids: &[TriangleId], eight: &Eight) -> ControlFlow<()> {
-        L::run(TestEight { eight, each: self.test(ids) })
+        let job = TestEight { eight, each: self.test(ids) };
+        if IN_PLACE { job.run() } else { L::run(job) }
     }
 
     #[inline(always)]

@@ -74,18 +74,18 @@ struct Grid {
     node: Node,
     /// What its voxels hold.
     slots: Vec<Slot>,
-    /// The grids in those that are divided.
-    inside: Vec<Grid>,
-    /// The triangles of the eights, one after another.
-    lists: Vec<u32>,
 }
 
-/// Something that a voxel holds: a grid, or an eight.
+/// Something that a voxel holds.
 struct Slot {
-    voxel: u32,
-    /// Triangles of the eight; none of a grid.
-    count: u32,
     bounds: Extent,
+    content: Content,
+}
+
+enum Content {
+    Grid(Grid),
+    /// Eight triangles, or fewer: how many. The last one is repeated.
+    Eight([u32; WIDTH], usize),
 }
 
 /// The triangles of a list, by voxel.
@@ -98,7 +98,6 @@ struct Sorted {
 /// A voxel that holds something, and where it is in the sorted list.
 #[derive(Clone, Copy)]
 struct Part {
-    voxel: u32,
     start: usize,
     end: usize,
 }
@@ -177,25 +176,24 @@ impl<'a> Sorter<'a> {
         } else {
             parts.iter().map(divide).collect()
         };
-        let mut grid = Grid::over(&lattice);
-        grid.slots.reserve_exact(SLOTS);
+        let mut slots = Vec::with_capacity(SLOTS);
         let mut room = SLOTS - parts.len();
         for (part, inside) in parts.iter().zip(divided) {
             let list = &mut list[part.range()];
             let more = list.len().div_ceil(WIDTH) - 1;
             if let Some(inside) = inside {
-                grid.add_grid(part.voxel, self.bounds(list), inside);
+                slots.push(self.slot(list, Some(inside)));
             } else if more <= room {
                 room -= more;
-                self.add_eights(&mut grid, part.voxel, list);
+                self.add_eights(&mut slots, list);
             } else {
                 // A grid of nothing but its eights.
-                let mut inside = Grid::over(&lattice);
-                self.add_eights(&mut inside, part.voxel, list);
-                grid.add_grid(part.voxel, self.bounds(list), inside);
+                let mut eights = Vec::new();
+                self.add_eights(&mut eights, list);
+                slots.push(self.slot(list, Some(Grid::new(&lattice, eights))));
             }
         }
-        grid
+        Grid::new(&lattice, slots)
     }
 
     /// A list by voxel, or cut into parts where voxels leave most of it in one.
@@ -209,7 +207,7 @@ impl<'a> Sorter<'a> {
         let mut list = sorted.list;
         let size = count.div_ceil(MOST_VOXELS * WIDTH) * WIDTH;
         cut(&self.extents, &mut list, size);
-        let part = |start| Part { voxel: 0, start, end: count.min(start + size) };
+        let part = |start| Part { start, end: count.min(start + size) };
         let parts = (0..count).step_by(size).map(part).collect();
         Sorted { list, parts }
     }
@@ -221,12 +219,21 @@ impl<'a> Sorter<'a> {
     }
 
     /// Adds a list in eights of neighbours, each with its box; ids are in ascending order in each.
-    fn add_eights(&self, grid: &mut Grid, voxel: u32, list: &mut [u32]) {
+    fn add_eights(&self, slots: &mut Vec<Slot>, list: &mut [u32]) {
         cut(&self.extents, list, WIDTH);
         for eight in list.chunks_mut(WIDTH) {
             eight.sort_unstable();
-            grid.add_eight(voxel, self.bounds(eight), eight);
+            slots.push(self.slot(eight, None));
         }
+    }
+
+    /// A list as something that a voxel holds: a grid, or else an eight.
+    fn slot(&self, list: &[u32], inside: Option<Grid>) -> Slot {
+        let eight = || {
+            let last = list.len() - 1;
+            Content::Eight(std::array::from_fn(|lane| list[lane.min(last)]), list.len())
+        };
+        Slot { bounds: self.bounds(list), content: inside.map_or_else(eight, Content::Grid) }
     }
 
     /// Sorts a list by the voxels that the middles of the triangles are in; behind all is what is kept apart.
@@ -260,11 +267,7 @@ impl<'a> Sorter<'a> {
             sorted[*end] = index;
             *end += 1;
         }
-        let part = |voxel: usize| Part {
-            voxel: voxel.min(VOXELS - 1) as u32,
-            start: ends[voxel] - counts[voxel],
-            end: ends[voxel],
-        };
+        let part = |voxel: usize| Part { start: ends[voxel] - counts[voxel], end: ends[voxel] };
         let occupied = (0..=VOXELS).filter(|&voxel| counts[voxel] > 0);
         Sorted { list: sorted, parts: occupied.map(part).collect() }
     }
@@ -294,11 +297,13 @@ impl<'a> Sorter<'a> {
             cube: self.cube,
             nodes: Vec::new(),
             groups: Vec::new(),
+            outermost: 0,
             order: Vec::new(),
             eights: Vec::new(),
         };
         if let Some(root) = root {
-            grid.nodes.push(Node::default());
+            grid.outermost = root.groups();
+            grid.groups.resize(grid.outermost, Group::EMPTY);
             self.put(root, 0, &mut grid);
         }
         grid.nodes.shrink_to_fit();
@@ -311,55 +316,45 @@ impl<'a> Sorter<'a> {
         grid
     }
 
-    fn put(
-        &self,
-        Grid { mut node, slots, inside, lists }: Grid,
-        place: usize,
-        grid: &mut NestedGrid,
-    ) {
-        let (first_group, first_grid) = (grid.groups.len(), grid.nodes.len());
-        node.first_group = first_group as u32;
-        node.slots = slots.len() as u32;
-        grid.nodes[place] = node;
-        grid.groups.resize(node.groups().end, Group::EMPTY);
-        grid.nodes.resize(first_grid + inside.len(), Node::default());
-        let (mut next_grid, mut start) = (first_grid, 0);
-        for (number, Slot { voxel, count, bounds }) in slots.into_iter().enumerate() {
-            let held = if count == 0 {
-                next_grid += 1;
-                next_grid - 1
-            } else {
-                let list = &lists[start..start + count as usize];
-                start += count as usize;
-                let last = list.len() - 1;
-                let id = |lane: usize| self.ids[list[lane.min(last)] as usize];
-                grid.order.extend((0..WIDTH).map(id));
-                grid.order.len() / WIDTH - 1
-            };
-            let group = &mut grid.groups[first_group + number / GROUP];
-            group.set(number % GROUP, voxel, bounds, held as u32, count);
+    /// Puts a grid where there is room for its groups, and behind all what is inside.
+    fn put(&self, from: Grid, first_group: usize, grid: &mut NestedGrid) {
+        grid.nodes.push(from.node);
+        let mut divided = Vec::new();
+        for (number, Slot { bounds, content, .. }) in from.slots.into_iter().enumerate() {
+            let (place, slot) = (first_group + number / GROUP, number % GROUP);
+            match content {
+                Content::Grid(inside) => {
+                    let first = grid.groups.len();
+                    let groups = first..first + inside.groups();
+                    grid.groups.resize(groups.end, Group::EMPTY);
+                    grid.groups[place].set_grid(slot, bounds, groups);
+                    divided.push((inside, first));
+                }
+                Content::Eight(list, count) => {
+                    let number = grid.order.len() / WIDTH;
+                    grid.groups[place].set_eight(slot, bounds, number, count);
+                    grid.order.extend(list.map(|index| self.ids[index as usize]));
+                }
+            }
         }
-        for (number, inside) in inside.into_iter().enumerate() {
-            self.put(inside, first_grid + number, grid);
+        for (inside, first) in divided {
+            self.put(inside, first, grid);
         }
     }
 }
 
 impl Grid {
-    fn over(lattice: &Lattice) -> Self {
-        let node = Node { min: lattice.min, side: lattice.side, ..Node::default() };
-        Self { node, slots: Vec::new(), inside: Vec::new(), lists: Vec::new() }
+    /// With small boxes first: a ray that asks for any occluder takes what it meets as it stands there, and the large boxes, those of
+    /// floors and walls, are mostly met by rays that start on them.
+    fn new(lattice: &Lattice, mut slots: Vec<Slot>) -> Self {
+        let size = |slot: &Slot| slot.bounds.half_area();
+        slots.sort_by(|a, b| size(a).total_cmp(&size(b)));
+        Self { node: Node { min: lattice.min, side: lattice.side }, slots }
     }
 
-    fn add_eight(&mut self, voxel: u32, bounds: Extent, list: &[u32]) {
-        self.lists.extend_from_slice(list);
-        self.slots.push(Slot { voxel, count: list.len() as u32, bounds });
-    }
-
-    fn add_grid(&mut self, voxel: u32, bounds: Extent, inside: Grid) {
-        self.node.divided |= 1 << self.slots.len();
-        self.inside.push(inside);
-        self.slots.push(Slot { voxel, count: 0, bounds });
+    /// Groups of what its voxels hold.
+    fn groups(&self) -> usize {
+        self.slots.len().div_ceil(GROUP)
     }
 }
 
@@ -370,5 +365,26 @@ impl Part {
 
     fn range(&self) -> Range<usize> {
         self.start..self.end
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn what_a_grid_holds_is_stored_with_small_boxes_first() {
+        let triangle = |n: u32| {
+            let place = Vec3::new(n as f32, (n * 7 % 40) as f32, (n * 13 % 40) as f32);
+            let size = 0.1 + (n * 11 % 40) as f32 / 20.0;
+            [place, place + size * Vec3::X, place + size * Vec3::ONE]
+        };
+        let grid = build(&(0..300).map(triangle).collect());
+        let held = grid.groups[..grid.outermost].iter().flat_map(Group::half_areas);
+        let held: Vec<f32> = held.collect();
+        assert!(held.len() > 16, "{held:?}");
+        assert!(held.is_sorted(), "{held:?}");
     }
 }

@@ -6,6 +6,8 @@
 //!
 //! Kay, Kajiya: Ray Tracing Complex Scenes. SIGGRAPH 1986.
 
+use std::ops::Range;
+
 use glam::Vec3A;
 
 use super::sort::Extent;
@@ -23,12 +25,12 @@ pub(super) const GROUP: usize = 16;
 pub(super) struct Group {
     /// By axis: the lower and the upper planes of the boxes, in the cube.
     bounds: [[[f32; GROUP]; 2]; 3],
-    /// The numbers of the grids and eights.
+    /// The numbers of the eights, and of the first groups of the grids.
     inside: [u32; GROUP],
-    /// Triangles of each eight.
+    /// Triangles of each eight, groups of each grid.
     counts: [u8; GROUP],
-    /// Which voxels they are in.
-    voxels: [u8; GROUP],
+    /// Which are grids, a bit each.
+    divided: u16,
 }
 
 impl Group {
@@ -37,23 +39,45 @@ impl Group {
         bounds: [[[f32::INFINITY; GROUP], [f32::NEG_INFINITY; GROUP]]; 3],
         inside: [0; GROUP],
         counts: [0; GROUP],
-        voxels: [0; GROUP],
+        divided: 0,
     };
 
-    /// Sets the number of a grid, without triangles of its own, or of an eight.
-    pub fn set(&mut self, slot: usize, voxel: u32, bounds: Extent, inside: u32, count: u32) {
+    /// Sets an eight: its number, and how many triangles it has.
+    pub fn set_eight(&mut self, slot: usize, bounds: Extent, number: usize, count: usize) {
+        self.set(slot, bounds, number, count);
+    }
+
+    /// Sets a grid: where its groups are.
+    pub fn set_grid(&mut self, slot: usize, bounds: Extent, groups: Range<usize>) {
+        self.divided |= 1 << slot;
+        self.set(slot, bounds, groups.start, groups.len());
+    }
+
+    fn set(&mut self, slot: usize, bounds: Extent, inside: usize, count: usize) {
         for axis in 0..3 {
             self.bounds[axis][0][slot] = bounds.low[axis];
             self.bounds[axis][1][slot] = bounds.high[axis];
         }
-        self.inside[slot] = inside;
+        self.inside[slot] = inside as u32;
         self.counts[slot] = count as u8;
-        self.voxels[slot] = voxel as u8;
     }
 
-    /// The number of a grid or an eight.
+    /// Whether something is a grid.
     #[inline(always)]
-    pub fn inside(&self, slot: usize) -> usize {
+    pub fn is_divided(&self, slot: usize) -> bool {
+        self.divided & (1 << slot) != 0
+    }
+
+    /// The groups of a grid.
+    #[inline(always)]
+    pub fn groups(&self, slot: usize) -> Range<usize> {
+        let first = self.inside[slot] as usize;
+        first..first + usize::from(self.counts[slot])
+    }
+
+    /// The number of an eight.
+    #[inline(always)]
+    pub fn eight(&self, slot: usize) -> usize {
         self.inside[slot] as usize
     }
 
@@ -73,15 +97,19 @@ impl Group {
         within(0) && within(1) && within(2)
     }
 
-    /// The number of a voxel.
-    #[inline(always)]
-    pub fn voxel(&self, slot: usize) -> u32 {
-        u32::from(self.voxels[slot])
+    /// Half of the surface of each box that is there.
+    #[cfg(test)]
+    pub fn half_areas(&self) -> impl Iterator<Item = f32> {
+        let corner = |end: usize, slot: usize| {
+            Vec3A::from([0, 1, 2].map(|axis| self.bounds[axis][end][slot]))
+        };
+        let extent = move |slot| Extent { low: corner(0, slot), high: corner(1, slot) };
+        (0..GROUP).map(extent).filter(|extent| extent.low.x < extent.high.x).map(Extent::half_area)
     }
 
-    /// A bit for each box that the line meets before `end`.
+    /// A bit for each box that the line meets before `end`, and where it enters them.
     #[inline(always)]
-    pub fn met<S: Sixteen>(&self, line: &LineLanes<S>, end: S) -> u16 {
+    pub fn met<S: Sixteen>(&self, line: &LineLanes<S>, end: S) -> (u16, S) {
         let [x, y, z] = line.down;
         let enter = line.at(0, &self.bounds[0][x & 1]).max(line.start);
         let enter = enter.max(line.at(1, &self.bounds[1][y & 1]));
@@ -89,6 +117,6 @@ impl Group {
         let leave = line.at(0, &self.bounds[0][x & 1 ^ 1]).min(end);
         let leave = leave.min(line.at(1, &self.bounds[1][y & 1 ^ 1]));
         let leave = leave.min(line.at(2, &self.bounds[2][z & 1 ^ 1]));
-        enter.less_equal(leave)
+        (enter.less_equal(leave), enter)
     }
 }

@@ -36,6 +36,8 @@ mod group;
 mod sort;
 mod walk;
 
+use std::ops::Range;
+
 use glam::{DVec3, UVec3, Vec3A};
 
 use group::{GROUP, Group};
@@ -99,35 +101,13 @@ impl Cube {
     }
 }
 
-/// One grid: where it is, and what its voxels hold.
+/// Where the voxels of one grid are. Rays need not know.
 #[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(64))]
 struct Node {
     /// The corner with the least coordinates.
     min: Vec3A,
     /// Sides of a voxel. Voxels beyond the grid's resolution are there, outside its box, and empty.
     side: Vec3A,
-    /// The first of the groups of what its voxels hold, which follow each other.
-    first_group: u32,
-    /// How many things its voxels hold.
-    slots: u32,
-    /// Which of those are grids, a bit each.
-    divided: u64,
-}
-
-impl Node {
-    /// The groups of what its voxels hold.
-    #[inline(always)]
-    fn groups(&self) -> std::ops::Range<usize> {
-        let first = self.first_group as usize;
-        first..first + (self.slots as usize).div_ceil(GROUP)
-    }
-
-    /// Whether something is a grid.
-    #[inline(always)]
-    fn is_divided(&self, slot: usize) -> bool {
-        self.divided & (1 << slot) != 0
-    }
 }
 
 /// Grids within grids over the triangles' box.
@@ -135,7 +115,9 @@ pub struct NestedGrid {
     cube: Cube,
     /// The outermost grid first; none if there is nothing in it.
     nodes: Vec<Node>,
+    /// What the voxels of each grid hold, one grid after another; the outermost has the first so many.
     groups: Vec<Group>,
+    outermost: usize,
     /// The triangles, eight by eight; where there are fewer, the last one is repeated.
     order: Vec<TriangleId>,
     eights: Vec<Eight>,
@@ -180,27 +162,19 @@ impl NestedGrid {
     #[must_use]
     pub fn cell_with(&self, triangle: TriangleId, point: DVec3) -> Cell {
         let place = self.cube.place(point).as_vec3a();
-        self.nodes.first().and_then(|node| self.find(node, triangle, place)).unwrap_or_default()
+        self.find(0..self.outermost, triangle, place).unwrap_or_default()
     }
 
-    fn find(&self, node: &Node, triangle: TriangleId, place: Vec3A) -> Option<Cell> {
-        (0..node.slots as usize).find_map(|slot| {
-            let group = self.group_of(node, slot);
-            if !group.holds(slot % GROUP, place) {
-                return None;
+    fn find(&self, groups: Range<usize>, triangle: TriangleId, place: Vec3A) -> Option<Cell> {
+        let slots =
+            self.groups[groups].iter().flat_map(|group| (0..GROUP).map(move |slot| (group, slot)));
+        slots.filter(|(group, slot)| group.holds(*slot, place)).find_map(|(group, slot)| {
+            if group.is_divided(slot) {
+                return self.find(group.groups(slot), triangle, place);
             }
-            if node.is_divided(slot) {
-                return self.find(&self.nodes[group.inside(slot % GROUP)], triangle, place);
-            }
-            let cell = group.cell(slot % GROUP);
+            let cell = group.cell(slot);
             self.listed(cell).contains(&triangle).then_some(cell)
         })
-    }
-
-    /// The group that something is in.
-    #[inline(always)]
-    fn group_of(&self, node: &Node, slot: usize) -> &Group {
-        &self.groups[node.first_group as usize + slot / GROUP]
     }
 
     /// The triangles of an eight.

@@ -6,11 +6,16 @@
 //! **Many rays** pass the outermost grid in turn before any goes on. A ray by itself is a chain, in which the processor waits for
 //! each link or guesses, and begins again if wrong; the first links of many do not depend on each other. Half of the
 //! queries of an open scene end there.
+//!
+//! **The nearest hit** is looked for in the order in which the line enters the boxes, and what it enters behind a hit is left out.
+//! Any hit is taken as things are stored (`build`).
+
+use std::ops::Range;
 
 use glam::{DVec3, Vec3A};
 
 use super::group::GROUP;
-use super::{NestedGrid, Node};
+use super::{NestedGrid, SLOTS};
 use crate::geometry::Ray;
 use crate::geometry::lanes::{Lanes, Sixteen};
 use crate::occlusion::brute::visit_all;
@@ -35,8 +40,6 @@ struct Line {
     shift: Vec3A,
     /// Along which axes the ray runs down: 1, else 0.
     down: [usize; 3],
-    /// The same by bits of a voxel's number.
-    mirror: u32,
     /// Where along the ray the line starts, and how fast it goes: `t` of the line is (t − start)·rate.
     start: f64,
     rate: f64,
@@ -54,8 +57,6 @@ impl Line {
             inverse,
             shift: -origin * inverse,
             down: [signs & 1, signs >> 1 & 1, signs >> 2],
-            // Each coordinate of a voxel has two bits of its number.
-            mirror: 3 * ((signs & 1) | (signs & 2) << 1 | (signs & 4) << 2) as u32,
             start,
             rate,
         }
@@ -103,34 +104,59 @@ impl<S: Sixteen> LineLanes<S> {
     }
 }
 
-impl NestedGrid {
-    /// Bits of what the voxels of a grid hold: of that whose boxes the line meets before `end`.
+/// Where a line enters the boxes of what a grid holds: of those that it meets.
+struct Entries([[f32; GROUP]; SLOTS / GROUP]);
+
+impl Entries {
+    const NONE: Self = Self([[0.0; GROUP]; SLOTS / GROUP]);
+
+    /// Of what the line meets, that which it enters first. Without a branch, as nobody can foresee which that is: bits of floats
+    /// from zero up are in their order.
     #[inline(always)]
-    fn met<S: Sixteen>(&self, node: &Node, line: &LineLanes<S>, end: f32) -> u64 {
-        let end = S::splat(end);
-        let (mut met, mut shift) = (0, 0);
-        for group in &self.groups[node.groups()] {
-            met |= u64::from(group.met(line, end)) << shift;
-            shift += GROUP;
+    fn first(&self, mut met: u64) -> usize {
+        let mut least = u64::MAX;
+        while met != 0 {
+            let slot = met.trailing_zeros() as usize;
+            met &= met - 1;
+            let enter = self.0[slot / GROUP][slot % GROUP].to_bits();
+            least = least.min(u64::from(enter) << 32 | slot as u64);
         }
-        met
+        least as usize % SLOTS
     }
 
-    /// Of what the line meets in a grid, that in the voxel that it comes to first.
+    /// Of what the line meets, that which it enters before `end`.
     #[inline(always)]
-    fn first_of(&self, node: &Node, line: &Line, mut met: u64) -> u32 {
-        let (mut first, mut least) = (0, u32::MAX);
-        while met != 0 {
-            let slot = met.trailing_zeros();
-            met &= met - 1;
-            // Mirrored along the axes that the line runs down, voxels are numbered in its order.
-            let group = self.group_of(node, slot as usize);
-            let number = group.voxel(slot as usize % GROUP) ^ line.mirror;
-            if number < least {
-                (first, least) = (slot, number);
+    fn until(&self, met: u64, end: f32) -> u64 {
+        let (mut left, mut kept) = (met, 0);
+        while left != 0 {
+            let slot = left.trailing_zeros() as usize;
+            left &= left - 1;
+            kept |= u64::from(self.0[slot / GROUP][slot % GROUP] <= end) << slot;
+        }
+        kept
+    }
+}
+
+impl NestedGrid {
+    /// Bits of what a grid holds: of that whose boxes the line meets before `end`; and where, if somebody asks.
+    #[inline(always)]
+    fn met<S: Sixteen>(
+        &self,
+        groups: Range<usize>,
+        line: &LineLanes<S>,
+        end: f32,
+        mut entries: Option<&mut Entries>,
+    ) -> u64 {
+        let end = S::splat(end);
+        let mut all = 0;
+        for (number, group) in self.groups[groups].iter().enumerate() {
+            let (met, enter) = group.met(line, end);
+            all |= u64::from(met) << (GROUP * number);
+            if let Some(Entries(entries)) = &mut entries {
+                enter.store(&mut entries[number % (SLOTS / GROUP)]);
             }
         }
-        first
+        all
     }
 }
 
@@ -149,7 +175,7 @@ struct Start {
 impl Start {
     /// Written in place: a copy would wait for what was just written piece by piece.
     #[inline(always)]
-    fn set<L: Lanes>(&mut self, grid: &NestedGrid, ray: &Ray) {
+    fn set<L: Lanes>(&mut self, grid: &NestedGrid, ray: &Ray, entries: Option<&mut Entries>) {
         /// Farthest from the middle of the cube, in its sides.
         const NEAR: f32 = 1.0;
         let cube = &grid.cube;
@@ -167,10 +193,8 @@ impl Start {
             }
         };
         (self.line, self.end) = (line, end);
-        self.met = match grid.nodes.first() {
-            Some(node) => grid.met::<L::Sixteen>(node, &LineLanes::new(&line), end),
-            None => 0,
-        };
+        let lanes = LineLanes::new(&line);
+        self.met = grid.met::<L::Sixteen>(0..grid.outermost, &lanes, end, entries);
     }
 
     #[cold]
@@ -207,9 +231,10 @@ impl Start {
 #[inline(always)]
 pub(super) fn walk<L: Lanes, V: Visit + ?Sized>(grid: &NestedGrid, ray: &Ray, visitor: &mut V) {
     let mut start = Start::default();
-    start.set::<L>(grid, ray);
+    let mut entries = Entries::NONE;
+    start.set::<L>(grid, ray, visitor.is_ordered().then_some(&mut entries));
     if start.is_of_interest() {
-        go_on::<L, V>(grid, &start, visitor);
+        go_on::<L, V>(grid, &start, &mut entries, visitor);
     }
 }
 
@@ -218,6 +243,8 @@ pub(super) fn walk_many<L: Lanes, V: VisitMany>(grid: &NestedGrid, rays: &[Ray],
     /// Rays at once: what is known of them stays in the nearest cache.
     const AT_ONCE: usize = 32;
     let mut starts = [Start::default(); AT_ONCE];
+    // For rays that want what is nearest; none of these does.
+    let mut entries = Entries::NONE;
     let mut first = 0;
     for rays in rays.chunks(AT_ONCE) {
         // Those that go on, by their number: without a branch, as nobody can foresee which do.
@@ -226,14 +253,16 @@ pub(super) fn walk_many<L: Lanes, V: VisitMany>(grid: &NestedGrid, rays: &[Ray],
         for (number, ray) in rays.iter().enumerate() {
             if visitors.admits(first + number) {
                 let start = &mut starts[number];
-                start.set::<L>(grid, ray);
+                start.set::<L>(grid, ray, None);
                 going[count] = number as u8;
                 count += usize::from(start.is_of_interest());
             }
         }
         for &number in &going[..count] {
             let number = usize::from(number);
-            go_on::<L, _>(grid, &starts[number], &mut visitors.one(first + number));
+            let visitor = &mut visitors.one(first + number);
+            debug_assert!(!visitor.is_ordered(), "many rays ask for anything");
+            go_on::<L, _>(grid, &starts[number], &mut entries, visitor);
         }
         first += AT_ONCE;
     }
@@ -241,52 +270,60 @@ pub(super) fn walk_many<L: Lanes, V: VisitMany>(grid: &NestedGrid, rays: &[Ray],
 
 /// From the outermost grid on.
 #[inline(always)]
-fn go_on<L: Lanes, V: Visit + ?Sized>(grid: &NestedGrid, start: &Start, visitor: &mut V) {
+fn go_on<L: Lanes, V: Visit + ?Sized>(
+    grid: &NestedGrid,
+    start: &Start,
+    entries: &mut Entries,
+    visitor: &mut V,
+) {
     if start.anyhow {
         return visit_all(&grid.order, 8, visitor);
     }
-    let Some(mut node) = grid.nodes.first() else { return };
     let (line, mut end, mut met) = (&start.line, start.end, start.met);
     let lanes = LineLanes::<L::Sixteen>::new(line);
-    // Grids around the present one of which something is left: their places, and what.
+    // Grids around the present one of which something is left: their first groups, and what.
     let mut around = [[0u64; 2]; MOST_DEPTH];
-    let (mut depth, mut place) = (0, 0);
+    let (mut depth, mut first) = (0, 0);
     let ordered = visitor.is_ordered();
     loop {
-        if met == 0 {
+        while met == 0 {
             if depth == 0 {
                 return;
             }
             depth -= 1;
-            [place, met] = around[depth];
-            node = &grid.nodes[place as usize];
+            [first, met] = around[depth];
+            if ordered && (end < start.end || met & (met - 1) != 0) {
+                // Less is left if something was found meanwhile.
+                let last = first as usize + met.ilog2() as usize / GROUP;
+                met &= grid.met(first as usize..last + 1, &lanes, end, Some(entries));
+            }
         }
         let slot = if ordered && met & (met - 1) != 0 {
-            grid.first_of(node, line, met) as usize
+            entries.first(met)
         } else {
             met.trailing_zeros() as usize
         };
         met &= !(1 << slot);
-        let group = grid.group_of(node, slot);
-        let inside = group.inside(slot % GROUP);
-        if node.is_divided(slot) {
+        let (group, slot) = (&grid.groups[first as usize + slot / GROUP], slot % GROUP);
+        if group.is_divided(slot) {
             if met != 0 {
-                around[depth] = [place, met];
+                around[depth] = [first, met];
                 depth += 1;
             }
-            place = inside as u64;
-            node = &grid.nodes[inside];
-            met = grid.met(node, &lanes, end);
+            let inside = group.groups(slot);
+            first = inside.start as u64;
+            met = grid.met(inside, &lanes, end, ordered.then_some(&mut *entries));
         } else {
-            let cell = group.cell(slot % GROUP);
-            if visitor.visit_eight(cell, grid.listed(cell), &grid.eights[inside]).is_break() {
+            let cell = group.cell(slot);
+            let eight = &grid.eights[group.eight(slot)];
+            if visitor.visit_eight(cell, grid.listed(cell), eight).is_break() {
                 return;
             }
             if ordered {
                 let nearer = line.end(visitor.end());
                 if nearer < end {
                     end = nearer;
-                    met &= grid.met(node, &lanes, end);
+                    met = entries.until(met, end);
                 }
             }
         }
