@@ -59,13 +59,19 @@ impl Outcome {
         self.best(|_| true).map_or(f64::NAN, |best| self.whole(best) / self.whole(who))
     }
 
-    /// The same if building the grid counts too.
+    /// The same of an Embree that gets rays as they come.
+    fn ratio_as_they_come(&self, who: &Figures) -> f64 {
+        let best = self.best(|embree| !embree.sorted);
+        best.map_or(f64::NAN, |best| self.whole(best) / self.whole(who))
+    }
+
+    /// The ratio if building the grid counts too.
     fn ratio_with_grid(&self, who: &Figures) -> f64 {
         let grid = self.grid_nanoseconds as f64 / self.all as f64;
         self.ratio(who) * self.whole(who) / (self.whole(who) + grid)
     }
 
-    /// Quartiles of that over the parts, without preparation.
+    /// Quartiles of the ratio over the parts, without preparation.
     fn quartiles(&self, who: &Figures) -> [f64; 3] {
         let best = self.best(|_| true).map_or(&[][..], |best| &best.parts);
         let mut ratios: Vec<f64> =
@@ -110,8 +116,8 @@ const RATED: [&str; 3] = ["shaft", "light-buffer", "auto"];
 /// The table of several races, their means, and how far each way is from the bound.
 pub fn markdown(outcomes: &[Outcome], bounds: &Bounds) -> String {
     let mut lines = vec![
-        "| scene | queries | best Embree, ns | if sorted, ns | grid `trace` | `light-buffer` | `shaft` | `auto` | ratio of `shaft` | of `light-buffer` | of `auto` | with the grid | MB: Embree, shaft, light buffer | over the bound: Embree, `shaft`, `auto` |".to_owned(),
-        format!("|{}", " --- |".repeat(14)),
+        "| scene | queries | best Embree, ns | rays as they come, ns | if sorted, ns | grid `trace` | `light-buffer` | `shaft` | `auto` | ratio of `shaft` | of `light-buffer` | of `auto` | with the grid | rays as they come: `shaft`, `auto` | MB: Embree, shaft, light buffer | over the bound: Embree, `shaft`, `auto` |".to_owned(),
+        format!("|{}", " --- |".repeat(16)),
     ];
     lines.extend(outcomes.iter().filter_map(|outcome| row(outcome, bounds)));
     let mean = |name: &str, what: &str, ratio: fn(&Outcome, &Figures) -> f64| {
@@ -123,6 +129,9 @@ pub fn markdown(outcomes: &[Outcome], bounds: &Bounds) -> String {
     };
     let mut means = RATED.map(|name| mean(name, "", Outcome::ratio)).to_vec();
     means.push(mean("auto", " with the grid", Outcome::ratio_with_grid));
+    for name in ["shaft", "auto"] {
+        means.push(mean(name, " over rays as they come", Outcome::ratio_as_they_come));
+    }
     let partly = outcomes.iter().any(|outcome| outcome.asked < outcome.all);
     lines.push(format!("\nGeometric mean of the ratios: {}.", means.join(", ")));
     lines.push(format!("{bounds}"));
@@ -136,7 +145,10 @@ pub fn markdown(outcomes: &[Outcome], bounds: &Bounds) -> String {
 
 fn row(outcome: &Outcome, bounds: &Bounds) -> Option<String> {
     let best = outcome.best(|_| true)?;
-    let sorted = outcome.best(|who| who.sorted).map_or(f64::NAN, |who| outcome.whole(who));
+    let [as_they_come, sorted] = [false, true].map(|sorted| {
+        let best = outcome.best(|who| who.sorted == sorted);
+        best.map_or(f64::NAN, |who| outcome.whole(who))
+    });
     let [trace, buffer, shaft, auto] =
         ["trace", "light-buffer", "shaft", "auto"].map(|name| outcome.ours(name));
     let (trace, buffer, shaft, auto) = (trace?, buffer?, shaft?, auto?);
@@ -147,11 +159,12 @@ fn row(outcome: &Outcome, bounds: &Bounds) -> Option<String> {
         [best, shaft, buffer].map(|who| format!("{:.1}", who.bytes as f64 / 1e6));
     let over = [embree, shaft_ns, auto_ns].map(|time| format!("{:.1}", time / bounds.query()));
     Some(format!(
-        "| {} | {:.1} M | {} ({}) | {} | {} | {} | {} | {} | **{:.2}** ({first:.2} {median:.2} {third:.2}) | {:.2} | {:.2} | {:.2} | {embree_mb}, {shaft_mb}, {buffer_mb} | {} |",
+        "| {} | {:.1} M | {} ({}) | {} | {} | {} | {} | {} | {} | **{:.2}** ({first:.2} {median:.2} {third:.2}) | {:.2} | {:.2} | {:.2} | {:.2}, {:.2} | {embree_mb}, {shaft_mb}, {buffer_mb} | {} |",
         outcome.scene,
         outcome.all as f64 / 1e6,
         short(embree),
         best.name,
+        short(as_they_come),
         short(sorted),
         short(trace),
         short(buffer_ns),
@@ -161,6 +174,8 @@ fn row(outcome: &Outcome, bounds: &Bounds) -> Option<String> {
         outcome.ratio(buffer),
         outcome.ratio(auto),
         outcome.ratio_with_grid(auto),
+        outcome.ratio_as_they_come(shaft),
+        outcome.ratio_as_they_come(auto),
         over.join(", "),
     ))
 }
