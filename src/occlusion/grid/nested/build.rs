@@ -320,7 +320,7 @@ impl<'a> Sorter<'a> {
     fn put(&self, from: Grid, first_group: usize, grid: &mut NestedGrid) {
         grid.nodes.push(from.node);
         let mut divided = Vec::new();
-        for (number, Slot { bounds, content, .. }) in from.slots.into_iter().enumerate() {
+        for (number, Slot { bounds, content }) in from.slots.into_iter().enumerate() {
             let (place, slot) = (first_group + number / GROUP, number % GROUP);
             match content {
                 Content::Grid(inside) => {
