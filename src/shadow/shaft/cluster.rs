@@ -5,12 +5,12 @@ use glam::Vec3;
 use super::bundle::{Bundle, PACKET, PACKETS, PACKETS_OF, packets_of};
 use super::cast::{Cast, Judged, Shadow};
 use super::kept::Kept;
-use super::planes::Ground;
+use super::planes::{Ground, Planes};
 use super::walk::Around;
 use crate::exact::certified;
 use crate::geometry::TriangleId;
 use crate::geometry::lanes::{Lanes, Sixteen};
-use crate::occlusion::{Tally, WIDTH};
+use crate::occlusion::{Cluster, Tally, WIDTH};
 
 /// Of fewer packets, boxes are not looked at before a triangle is cast.
 const WORTH_JUDGING: usize = 4;
@@ -29,16 +29,9 @@ impl Tests<'_, '_> {
     #[inline(always)]
     pub fn part<L: Lanes>(self, part: usize, number: u32) {
         let Self { bundle, kept, ground, around, tally } = self;
-        let cluster = &around.clusters.all()[number as usize];
-        let planes = kept.of::<L>(ground, number, cluster);
-        let mut candidates = planes.candidates::<L>(&bundle.bases[part], &bundle.boxes[part]);
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros() as usize;
-            candidates &= candidates - 1;
-            if !cluster.repeats(lane) {
-                let shadow = Shadow::<L::Sixteen>::of(planes, lane, cluster.ids()[lane]);
-                cast(bundle, part, &shadow, ground, around, tally);
-            }
+        let mut shadows = Shadows::on::<L>(bundle, part, kept, ground, around, number);
+        while let Some(shadow) = shadows.next::<L::Sixteen>() {
+            cast(bundle, part, &shadow, ground, around, tally);
         }
     }
 
@@ -46,17 +39,10 @@ impl Tests<'_, '_> {
     #[inline(always)]
     pub fn packet<L: Lanes>(self, packet: usize, rays: u16, number: u32) {
         let Self { bundle, kept, ground, around, tally } = self;
-        let cluster = &around.clusters.all()[number as usize];
-        let planes = kept.of::<L>(ground, number, cluster);
         let part = PACKETS + packet;
-        let mut candidates = planes.candidates::<L>(&bundle.bases[part], &bundle.boxes[part]);
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros() as usize;
-            candidates &= candidates - 1;
-            if !cluster.repeats(lane) {
-                let shadow = Shadow::<L::Sixteen>::of(planes, lane, cluster.ids()[lane]);
-                cast_on(bundle, packet, rays, &shadow, around, tally);
-            }
+        let mut shadows = Shadows::on::<L>(bundle, part, kept, ground, around, number);
+        while let Some(shadow) = shadows.next::<L::Sixteen>() {
+            cast_on(bundle, packet, rays, &shadow, around, tally);
         }
     }
 
@@ -83,6 +69,43 @@ impl Tests<'_, '_> {
             blocked |= u16::from(is_blocked) << lane;
         }
         bundle.block(packet, blocked);
+    }
+}
+
+/// The shadows of those triangles of a cluster that may fall on a part of the bundle, each once.
+struct Shadows<'a> {
+    planes: &'a Planes,
+    cluster: &'a Cluster,
+    /// Those that are left: a bit each.
+    candidates: u32,
+}
+
+impl<'a> Shadows<'a> {
+    #[inline(always)]
+    fn on<L: Lanes>(
+        bundle: &Bundle,
+        part: usize,
+        kept: &'a mut Kept,
+        ground: &Ground,
+        around: &'a Around<'_>,
+        number: u32,
+    ) -> Self {
+        let cluster = &around.clusters.all()[number as usize];
+        let planes = kept.of::<L>(ground, number, cluster);
+        let candidates = planes.candidates::<L>(&bundle.bases[part], &bundle.boxes[part]);
+        Self { planes, cluster, candidates }
+    }
+
+    #[inline(always)]
+    fn next<S: Sixteen>(&mut self) -> Option<Shadow<S>> {
+        while self.candidates != 0 {
+            let lane = self.candidates.trailing_zeros() as usize;
+            self.candidates &= self.candidates - 1;
+            if !self.cluster.repeats(lane) {
+                return Some(Shadow::of(self.planes, lane, self.cluster.ids()[lane]));
+            }
+        }
+        None
     }
 }
 

@@ -27,7 +27,6 @@ mod kept;
 mod order;
 mod planes;
 mod rays;
-
 mod view;
 mod walk;
 

@@ -15,9 +15,6 @@ use crate::geometry::lanes::{Lanes, LanesJob, Sixteen};
 /// So often is the rectangle of all halved at most, a bit of a key each: the counts of all cells stay in the nearest cache.
 const MOST_BITS: u32 = 13;
 
-/// And at least: so the curve is one.
-const LEAST_BITS: u32 = 6;
-
 /// Which queries, in which order; kept from one time to the next.
 #[derive(Default)]
 pub(super) struct Order {
@@ -67,7 +64,7 @@ impl LanesJob for SortByDirection<'_> {
         let low = [low[0].least(), low[1].least()];
         let high = [high[0].greatest(), high[1].greatest()];
         // About as many cells as queries: with more, clearing and adding up their counts would take longer than sorting.
-        let bits = (packets.len() * PACKET).ilog2().clamp(LEAST_BITS, MOST_BITS);
+        let bits = (packets.len() * PACKET).ilog2().min(MOST_BITS);
         let curve = Curve::through(low, high, bits);
         cells.resize(packets.len(), [0; PACKET]);
         counts.clear();
@@ -164,7 +161,7 @@ impl Curve {
     }
 }
 
-/// Added to a number below 2¹² it leaves the number, rounded, in the lowest bits of the sum.
+/// Added to a number below 2²³ it leaves the number, rounded, in the lowest bits of the sum.
 const WHOLE: f32 = (1 << 23) as f32;
 
 #[cfg(test)]
@@ -200,7 +197,7 @@ mod tests {
 
     #[test]
     fn the_longer_side_is_halved_first_and_narrow_rectangles_are_cut_as_often() {
-        let curve = Curve::through([0.0, 0.0], [2.0, 9.0], 13);
+        let curve = Curve::through([0.0, 0.0], [2.0, 9.0], MOST_BITS);
         assert_eq!(curve.halvings, [5, 8]);
         let mut seen = [Row::ZERO; 2];
         for (lane, [x, y]) in
@@ -210,9 +207,9 @@ mod tests {
         }
         let cells = curve.cells(&seen);
         assert!(cells[0] < cells[1] && cells[1] < cells[2] && cells[2] < cells[3], "{cells:?}");
-        assert_eq!(cells[3], (1 << 13) - 1);
-        let line = Curve::through([0.0, 1.0], [0.5, 1.0], 13);
-        assert_eq!(line.halvings, [13, 0], "nothing to halve");
+        assert_eq!(cells[3], (1 << MOST_BITS) - 1);
+        let line = Curve::through([0.0, 1.0], [0.5, 1.0], MOST_BITS);
+        assert_eq!(line.halvings, [MOST_BITS, 0], "nothing to halve");
     }
 
     #[test]

@@ -13,7 +13,6 @@ use super::kept::Kept;
 use super::order::Order;
 use super::planes::Ground;
 use super::rays::PacketRays;
-
 use crate::exact::Exact;
 use crate::geometry::Triangles;
 use crate::geometry::intersect::RayLanes;
