@@ -54,15 +54,19 @@ impl Outcome {
         self.figures.iter().find(|who| !who.embree && who.name == name)
     }
 
+    /// Nanoseconds a query of the fastest Embree of some kind, preparation included.
+    fn fastest(&self, such: impl Fn(&Figures) -> bool) -> f64 {
+        self.best(such).map_or(f64::NAN, |best| self.whole(best))
+    }
+
     /// The time of the best Embree over that of somebody.
     fn ratio(&self, who: &Figures) -> f64 {
-        self.best(|_| true).map_or(f64::NAN, |best| self.whole(best) / self.whole(who))
+        self.fastest(|_| true) / self.whole(who)
     }
 
     /// The same of an Embree that gets rays as they come.
     fn ratio_as_they_come(&self, who: &Figures) -> f64 {
-        let best = self.best(|embree| !embree.sorted);
-        best.map_or(f64::NAN, |best| self.whole(best) / self.whole(who))
+        self.fastest(|embree| !embree.sorted) / self.whole(who)
     }
 
     /// The ratio if building the grid counts too.
@@ -145,10 +149,8 @@ pub fn markdown(outcomes: &[Outcome], bounds: &Bounds) -> String {
 
 fn row(outcome: &Outcome, bounds: &Bounds) -> Option<String> {
     let best = outcome.best(|_| true)?;
-    let [as_they_come, sorted] = [false, true].map(|sorted| {
-        let best = outcome.best(|who| who.sorted == sorted);
-        best.map_or(f64::NAN, |who| outcome.whole(who))
-    });
+    let [as_they_come, sorted] =
+        [false, true].map(|sorted| outcome.fastest(|embree| embree.sorted == sorted));
     let [trace, buffer, shaft, auto] =
         ["trace", "light-buffer", "shaft", "auto"].map(|name| outcome.ours(name));
     let (trace, buffer, shaft, auto) = (trace?, buffer?, shaft?, auto?);

@@ -66,7 +66,7 @@ pub fn decide(ray: &Ray, triangle: &Triangle) -> (Verdict, Stage) {
         return (Verdict::Clear, Stage::Double);
     }
     if edges[0].is_certain & edges[1].is_certain & edges[2].is_certain & (ray.end > 0.0) {
-        let interval = doubles.interval();
+        let interval = doubles.interval(start, slope);
         if interval[0].is_certain & interval[1].is_certain {
             return (settle(signs, || interval.map(|end| end.sign)), Stage::Double);
         }
@@ -85,7 +85,8 @@ fn complete(ray: &Ray, triangle: &Triangle, doubles: &Doubles) -> Verdict {
     let edges =
         [first.or(|| exact.edge(0)), second.or(|| exact.edge(1)), third.or(|| exact.edge(2))];
     settle(edges, || {
-        let [start, stop] = doubles.interval();
+        let (start, slope) = doubles.start_and_slope();
+        let [start, stop] = doubles.interval(start, slope);
         [start.or(|| exact.start()), stop.or(|| exact.stop())]
     })
 }
@@ -153,6 +154,7 @@ impl Doubles {
         [edge(a, b), edge(b, c), edge(c, a)]
     }
 
+    /// Where the ray starts above the triangle's plane, and how fast it goes there.
     #[inline(always)]
     fn start_and_slope(&self) -> (Bounded<f64>, Bounded<f64>) {
         let normal = Bounded::cross(self.sides[0], self.sides[1]);
@@ -161,8 +163,7 @@ impl Doubles {
 
     /// The signs of start and stop.
     #[inline(always)]
-    fn interval(&self) -> [Sign; 2] {
-        let (start, slope) = self.start_and_slope();
+    fn interval(&self, start: Bounded<f64>, slope: Bounded<f64>) -> [Sign; 2] {
         let stop = if self.end < f64::INFINITY {
             Bounded {
                 value: self.end * slope.value - start.value,

@@ -70,21 +70,19 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for NearestHit<'_> {
         }
         tally.traversals += 1;
         let triangles = engine.triangles();
-        if W::INLINED && L::COUNT > 4 {
-            if W::IN_PLACE {
-                let mut visitor = NearestVisitor::<T, L, true>::new(triangles, ray, tally);
-                engine.walk().walk::<L, _>(ray, &mut visitor);
-                visitor.best
-            } else {
-                let mut visitor = NearestVisitor::<T, L, false>::new(triangles, ray, tally);
-                engine.walk().walk::<L, _>(ray, &mut visitor);
-                visitor.best
-            }
-        } else {
-            let mut visitor = NearestVisitor::<T, L, false>::new(triangles, ray, tally);
-            walk_any::<W, L>(engine.walk(), ray, &mut visitor);
-            visitor.best
+        // `IN_PLACE` is for walks that are compiled for the lanes.
+        if W::IN_PLACE && W::INLINED && L::COUNT > 4 {
+            let mut visitor = NearestVisitor::<T, L, true>::new(triangles, ray, tally);
+            engine.walk().walk::<L, _>(ray, &mut visitor);
+            return visitor.best;
         }
+        let mut visitor = NearestVisitor::<T, L, false>::new(triangles, ray, tally);
+        if W::INLINED && L::COUNT > 4 {
+            engine.walk().walk::<L, _>(ray, &mut visitor);
+        } else {
+            walk_any::<W, L>(engine.walk(), ray, &mut visitor);
+        }
+        visitor.best
     }
 }
 
