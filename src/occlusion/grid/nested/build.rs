@@ -6,7 +6,7 @@
 //! box passes one in it with the ratio of their surfaces (MacDonald & Booth 1990).
 //!
 //! A list that is short enough is cut into eights of neighbours with a box each, where surfaces say. A list that voxels do not
-//! take apart, copies above all, is cut in the same way.
+//! take apart, copies above all, is cut into equal parts.
 //!
 //! MacDonald, Booth: Heuristics for Ray Tracing Using Space Subdivision. The Visual Computer 6(3), 1990.
 
@@ -15,7 +15,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
-use super::cut::{cut, middles};
+use super::cut::{MOST_PARTS, into_eights, into_parts, middles};
 use super::group::{GROUP, Group};
 use super::sort::{Extent, Lattice};
 use super::walk::MOST_DEPTH;
@@ -26,7 +26,7 @@ use crate::occlusion::Eight;
 use crate::occlusion::eight::WIDTH;
 
 /// A voxel with at most so many triangles, six vectors full, is never divided.
-const FEW: usize = 48;
+pub(super) const FEW: usize = 48;
 
 /// A part of a scene with at most so many triangles, two vectors full, gains nothing by a grid of its own.
 const LEAST_DIVIDED: usize = 16;
@@ -180,16 +180,17 @@ impl<'a> Sorter<'a> {
         let mut room = SLOTS - parts.len();
         for (part, inside) in parts.iter().zip(divided) {
             let list = &mut list[part.range()];
-            let more = list.len().div_ceil(WIDTH) - 1;
             if let Some(inside) = inside {
                 slots.push(self.slot(list, Some(inside)));
-            } else if more <= room {
+                continue;
+            }
+            let mut eights = self.eights(list);
+            let more = eights.len() - 1;
+            if more <= room {
                 room -= more;
-                self.add_eights(&mut slots, list);
+                slots.append(&mut eights);
             } else {
                 // A grid of nothing but its eights.
-                let mut eights = Vec::new();
-                self.add_eights(&mut eights, list);
                 slots.push(self.slot(list, Some(Grid::new(&lattice, eights))));
             }
         }
@@ -205,8 +206,8 @@ impl<'a> Sorter<'a> {
             return sorted;
         }
         let mut list = sorted.list;
-        let size = count.div_ceil(MOST_VOXELS * WIDTH) * WIDTH;
-        cut(&self.extents, &mut list, size);
+        let size = count.div_ceil(MOST_PARTS * WIDTH) * WIDTH;
+        into_parts(&self.extents, &mut list, size);
         let part = |start| Part { start, end: count.min(start + size) };
         let parts = (0..count).step_by(size).map(part).collect();
         Sorted { list, parts }
@@ -218,13 +219,15 @@ impl<'a> Sorter<'a> {
         boxes.fold(Extent::EMPTY, Extent::union).within(self.around, self.cube.padding)
     }
 
-    /// Adds a list in eights of neighbours, each with its box; ids are in ascending order in each.
-    fn add_eights(&self, slots: &mut Vec<Slot>, list: &mut [u32]) {
-        cut(&self.extents, list, WIDTH);
-        for eight in list.chunks_mut(WIDTH) {
+    /// A list in eights of neighbours, each with its box; ids are in ascending order in each.
+    fn eights(&self, list: &mut [u32]) -> Vec<Slot> {
+        let mut eights = Vec::new();
+        into_eights(&self.extents, list, &mut eights);
+        let slot = |eight: &mut [u32]| {
             eight.sort_unstable();
-            slots.push(self.slot(eight, None));
-        }
+            self.slot(eight, None)
+        };
+        eights.into_iter().map(slot).collect()
     }
 
     /// A list as something that a voxel holds: a grid, or else an eight.
