@@ -1,9 +1,10 @@
 //! Grouping triangles into clusters, and clusters into nodes.
 //!
 //! Top down by the surface area heuristic (MacDonald & Booth 1990; Wald 2007): many triangles by the cells of a grid, several levels of the
-//! tree at once (`cells`), then in bins along the longest axis (`divide`), few of them exactly (`few`). Below the parts that cells make it is always at a
-//! multiple of eight triangles, so that all clusters of a part but the last are full; then halves are put into nodes of eight (`collapse`). The counts that
-//! the heuristic weighs are clusters: a cluster costs the same however full it is.
+//! tree at once (`cells`), then in bins along the longest axis (`divide`), few of them exactly (`few`); then halves are put into nodes
+//! of eight (`collapse`). The counts that the heuristic weighs are clusters: a cluster costs the same however full it is. So most come out
+//! full, but not where a few triangles are apart from the rest: cuts at multiples of eight took 4 bytes a triangle less, and 1.6 times
+//! the tests where things are small and apart.
 //!
 //! MacDonald, Booth: Heuristics for Ray Tracing Using Space Subdivision. The Visual Computer 6(3), 1990.
 //! Wald: On Fast Construction of SAH-based Bounding Volume Hierarchies. Symposium on Interactive Ray Tracing 2007.

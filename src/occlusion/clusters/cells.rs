@@ -26,7 +26,7 @@ const MOST_BITS: u32 = 15;
 const MOST_ALONG_BITS: u32 = 6;
 const MOST_ALONG: usize = 1 << MOST_ALONG_BITS;
 
-/// No part has fewer items: only the last cluster of a part is not full, one of eight then or better.
+/// No part has fewer items: below that, every cut is weighed.
 const LEAST: usize = 64;
 
 /// Items in a tree of ranges.

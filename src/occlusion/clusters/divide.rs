@@ -1,5 +1,4 @@
-//! Where to divide a range of triangles, and doing so: at the boundary of a bin, in one pass without branches. The few triangles
-//! that are missing for whole clusters come from the bin beside it.
+//! Where to divide a range of triangles, and doing so: at the boundary of a bin, in one pass without branches.
 
 use glam::{Vec3, Vec3A, Vec4, Vec4Swizzles};
 
@@ -90,7 +89,7 @@ pub(super) fn places_of(items: &[Item]) -> Around {
     places
 }
 
-/// Items in two parts: how many the first has, a multiple of [`WIDTH`], and boxes around the places of each, or larger.
+/// Items in two parts: how many the first has, and boxes around the places of each, or larger.
 pub(super) struct Divided {
     pub at: usize,
     pub sides: [Around; 2],
@@ -106,67 +105,22 @@ pub(super) fn divide(items: &mut [Item], places: &Around) -> Divided {
         return at_bin(items, slots, cut);
     }
     // All in one place, or so far apart that no box has a surface in f32.
-    let at = whole_clusters(items.len() / 2, items.len());
+    let at = items.len() / 2;
     items.select_nth_unstable_by(at, |a, b| a.place()[axis].total_cmp(&b.place()[axis]));
     let (left, right) = items.split_at(at);
     Divided { at, sides: [places_of(left), places_of(right)] }
 }
 
-/// Divides at the boundary of a bin, or a few items beside it.
+/// Divides at the boundary of a bin.
 fn at_bin(items: &mut [Item], slots: Slots, cut: Cut) -> Divided {
-    let Cut { bin, count, mut sides } = cut;
     let mut front = 0;
     for index in 0..items.len() {
         // Without a branch: which side comes next is anybody's guess.
-        let is_left = slots.of(&items[index]) < bin;
+        let is_left = slots.of(&items[index]) < cut.bin;
         items.swap(index, front);
         front += usize::from(is_left);
     }
-    let at = whole_clusters(count, items.len());
-    // What is missing comes from the bin beyond the boundary, as far as there is something in it.
-    if at > count {
-        gather(&mut items[count..], End::Front, at - count, |item| slots.of(item) == bin);
-    } else {
-        gather(&mut items[..count], End::Back, count - at, |item| slots.of(item) == bin - 1);
-    }
-    let (from, to) = (count.min(at), count.max(at));
-    let receives = &mut sides[usize::from(at < count)];
-    for item in &items[from..to] {
-        receives.join_place(item.place());
-    }
-    Divided { at, sides }
-}
-
-/// Which end of a slice.
-#[derive(Clone, Copy)]
-enum End {
-    Front,
-    Back,
-}
-
-/// Swaps so many items that belong there to one end; fewer if there are no more.
-fn gather(items: &mut [Item], end: End, most: usize, belongs: impl Fn(&Item) -> bool) {
-    let last = items.len() - 1;
-    let place = |number: usize| match end {
-        End::Front => number,
-        End::Back => last - number,
-    };
-    let mut gathered = 0;
-    for number in 0..items.len() {
-        if gathered == most {
-            break;
-        }
-        if belongs(&items[place(number)]) {
-            items.swap(place(number), place(gathered));
-            gathered += 1;
-        }
-    }
-}
-
-/// So many of a range, rounded to whole clusters, so that something is left on either side.
-fn whole_clusters(count: usize, of: usize) -> usize {
-    let most = (of - 1) / WIDTH;
-    ((count + WIDTH / 2) / WIDTH).clamp(1, most) * WIDTH
+    Divided { at: front, sides: cut.sides }
 }
 
 /// Bins along an axis.
@@ -193,6 +147,12 @@ pub(super) struct Heap {
 
 impl Heap {
     pub const EMPTY: Self = Self { count: 0, around: Around::NOTHING };
+
+    #[inline(always)]
+    pub fn add(&mut self, item: &Item) {
+        self.count += 1;
+        self.around.join(&item.0);
+    }
 
     #[inline(always)]
     pub fn join(&mut self, other: &Self) {
@@ -223,11 +183,10 @@ impl Bin {
     }
 }
 
-/// Before which bin to cut, how many items come before it, and boxes around the places on either side.
+/// Before which bin to cut, and boxes around the places on either side.
 #[derive(Clone, Copy)]
 struct Cut {
     bin: usize,
-    count: usize,
     sides: [Around; 2],
 }
 
@@ -237,8 +196,7 @@ impl Cut {
         let mut bins = [Bin::EMPTY; BINS];
         for item in items {
             let bin = &mut bins[slots.of(item)];
-            bin.items.count += 1;
-            bin.items.around.join(&item.0);
+            bin.items.add(item);
             bin.places.join_place(item.place());
         }
         let mut right = [Bin::EMPTY; BINS + 1];
@@ -255,8 +213,7 @@ impl Cut {
             let cost = left.items.cost() + right.items.cost();
             if left.items.count > 0 && right.items.count > 0 && cost < least {
                 least = cost;
-                let count = left.items.count;
-                best = Some(Self { bin, count, sides: [left.places, right.places] });
+                best = Some(Self { bin, sides: [left.places, right.places] });
             }
         }
         best
@@ -285,13 +242,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_range_is_divided_into_whole_clusters_and_nothing_is_lost(
+        fn nothing_is_lost_and_both_sides_have_some(
             places in prop::collection::vec((0u8..200, 0u8..20, 0u8..3), WIDTH + 1..1500),
         ) {
             let mut items = items_at(&places);
             let around = places_of(&items);
             let Divided { at, sides } = divide(&mut items, &around);
-            prop_assert!(at % WIDTH == 0 && at > 0 && at < items.len());
+            prop_assert!(at > 0 && at < items.len());
             for (index, item) in items.iter().enumerate() {
                 prop_assert!(holds(&sides[usize::from(index >= at)], item.place()));
             }
@@ -302,15 +259,13 @@ mod tests {
     }
 
     #[test]
-    fn two_heaps_are_taken_apart_but_for_a_part_of_a_cluster() {
+    fn two_heaps_are_taken_apart() {
         let places: Vec<(u8, u8, u8)> =
             (0..603).map(|number| (if number % 3 == 0 { 200 } else { 0 }, 0, 0)).collect();
         let mut items = items_at(&places);
         let around = places_of(&items);
-        let Divided { at, .. } = divide(&mut items, &around);
-        let strays =
-            |items: &[Item], heap: f32| items.iter().filter(|item| item.0.low.x != heap).count();
-        assert!(strays(&items[..at], 0.0) + strays(&items[at..], 200.0) <= WIDTH / 2, "{at}");
+        assert_eq!(divide(&mut items, &around).at, 402);
+        assert!(items[..402].iter().all(|item| item.0.low.x == 0.0));
     }
 
     #[test]

@@ -1,9 +1,10 @@
-//! Dividing few triangles: they are sorted, and every cut between whole clusters is weighed.
+//! Dividing few triangles: they are sorted, and every cut is weighed.
+//!
+//! Anywhere, not only between full clusters: two that are not full but apart are often cheaper than one and a rest.
 //!
 //! To sort so few is to count, for each, how many come before it, which vectors do without a branch.
 
-use super::WIDTH;
-use super::divide::{Around, Divided, Item, places_of};
+use super::divide::{Around, Divided, Heap, Item, places_of};
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 
 /// So many at most.
@@ -16,9 +17,8 @@ const KEY_BITS: u32 = 15;
 /// Divides [`FEW`] items or less, but more than [`WIDTH`].
 pub(super) fn divide(items: &mut [Item], places: &Around, arithmetic: Arithmetic) -> Divided {
     let sorted = sort(items, places, arithmetic);
-    let clusters = items.len().div_ceil(WIDTH);
     let best = if sorted { cheapest_cut(items) } else { None };
-    let at = best.unwrap_or(clusters / 2) * WIDTH;
+    let at = best.unwrap_or(items.len() / 2);
     let (left, right) = items.split_at(at);
     Divided { at, sides: [places_of(left), places_of(right)] }
 }
@@ -48,25 +48,19 @@ fn sort(items: &mut [Item], places: &Around, arithmetic: Arithmetic) -> bool {
     true
 }
 
-/// After how many clusters; `None` if no cost is a number.
+/// After how many items; `None` if no cost is a number.
 fn cheapest_cut(items: &[Item]) -> Option<usize> {
-    const MOST: usize = FEW / WIDTH;
-    let mut boxes = [Around::NOTHING; MOST];
-    let count = items.len().div_ceil(WIDTH);
-    for (around, items) in boxes.iter_mut().zip(items.chunks(WIDTH)) {
-        items.iter().for_each(|item| around.join(&item.0));
-    }
-    let mut right = [0.0; MOST];
-    let mut around = Around::NOTHING;
-    for number in (1..count).rev() {
-        around.join(&boxes[number]);
-        right[number] = (count - number) as f32 * around.half_area();
+    let mut right = [0.0; FEW];
+    let mut heap = Heap::EMPTY;
+    for (number, item) in items.iter().enumerate().skip(1).rev() {
+        heap.add(item);
+        right[number] = heap.cost();
     }
     let (mut best, mut least) = (None, f32::INFINITY);
-    let mut around = Around::NOTHING;
-    for number in 1..count {
-        around.join(&boxes[number - 1]);
-        let cost = number as f32 * around.half_area() + right[number];
+    let mut heap = Heap::EMPTY;
+    for number in 1..items.len() {
+        heap.add(&items[number - 1]);
+        let cost = heap.cost() + right[number];
         if cost < least {
             (best, least) = (Some(number), cost);
         }
@@ -106,6 +100,7 @@ mod tests {
     use glam::Vec3A;
     use proptest::prelude::*;
 
+    use super::super::WIDTH;
     use super::*;
 
     /// Cubes that begin here along the first axis.
@@ -139,13 +134,16 @@ mod tests {
 
     #[test]
     fn the_cut_is_where_boxes_are_apart() {
-        let places: Vec<f32> =
-            (0..40u8).map(|n| f32::from(n % 5) + 100.0 * f32::from(u8::from(n % 5 > 2))).collect();
-        let mut items = items(&places);
-        let around = places_of(&items);
-        let Divided { at, sides } = divide(&mut items, &around, Arithmetic::of_this_cpu());
-        assert_eq!(at, 24);
-        assert_eq!(sides.map(|side| side.longest().1), [4.0, 2.0]);
+        // 24 and 16, which full clusters divide; and one less in the first heap.
+        let far = |n: u8| f32::from(n % 5) + 100.0 * f32::from(u8::from(n % 5 > 2));
+        for first in [0, 1] {
+            let places: Vec<f32> = (first..40).map(far).collect();
+            let mut items = items(&places);
+            let around = places_of(&items);
+            let Divided { at, sides } = divide(&mut items, &around, Arithmetic::of_this_cpu());
+            assert_eq!(at, 24 - usize::from(first));
+            assert_eq!(sides.map(|side| side.longest().1), [4.0, 2.0]);
+        }
     }
 
     #[test]
