@@ -45,7 +45,7 @@ use crate::occlusion::{Clusters, Tally};
 
 /// Bundles whose packets are larger than so many clusters are put together anew, by direction,
 /// unless packets that are put together so are expected to be as large.
-const APART: f32 = 0.3;
+const APART: f32 = 0.45;
 
 /// So few packets are not sorted.
 const WORTH_SORTING: usize = 4;
