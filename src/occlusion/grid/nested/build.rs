@@ -28,6 +28,9 @@ use crate::occlusion::eight::WIDTH;
 /// A voxel with at most so many triangles, six vectors full, is never divided.
 pub(super) const FEW: usize = 48;
 
+// Were each triangle by itself, there would still be a place for each.
+const _: () = assert!(FEW <= SLOTS);
+
 /// A part of a scene with at most so many triangles, two vectors full, gains nothing by a grid of its own.
 const LEAST_DIVIDED: usize = 16;
 

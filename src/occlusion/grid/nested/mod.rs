@@ -8,7 +8,7 @@
 //! once, eights can be stored as a vector test wants them.
 //!
 //! Wins over a uniform grid wherever detail is uneven, which is everywhere, and is built in half of the time
-//! that Embree's BVH takes, in no more memory. Loses to it in shadow rays by half, where many long triangles overlap by more:
+//! that Embree's BVH takes, in no more memory. Loses to it in shadow rays by a third, where many long triangles overlap by more:
 //! Embree chooses where to split.
 //!
 //! **Exact,** because nothing is lost. All of it lives in the unit cube of the scene, in f32. A box reaches beyond its triangles by
