@@ -14,7 +14,7 @@ pub(super) const FEW: usize = 128;
 /// of them are one vector of AVX2; that leaves the place a 256th of the extent, or better.
 const KEY_BITS: u32 = 15;
 
-/// Divides [`FEW`] items or less, but more than [`WIDTH`].
+/// Divides [`FEW`] items or less, but more than a cluster has.
 pub(super) fn divide(items: &mut [Item], places: &Around, arithmetic: Arithmetic) -> Divided {
     let sorted = sort(items, places, arithmetic);
     let best = if sorted { cheapest_cut(items) } else { None };

@@ -15,7 +15,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
-use super::cut::{MOST_PARTS, into_eights, into_parts, middles};
+use super::cut::{into_eights, into_parts, middles};
 use super::group::{GROUP, Group};
 use super::sort::{Extent, Lattice};
 use super::walk::MOST_DEPTH;
@@ -36,7 +36,7 @@ const LEAST_DIVIDED: usize = 16;
 
 /// Triangles to a voxel of a grid, and voxels at most: half of what there are bits for, so that there is room for eights.
 const PER_VOXEL: usize = 6;
-const MOST_VOXELS: usize = SLOTS / 2;
+pub(super) const MOST_VOXELS: usize = SLOTS / 2;
 
 /// Voxels that there are numbers for.
 const VOXELS: usize = (MOST * MOST * MOST) as usize;
@@ -209,7 +209,7 @@ impl<'a> Sorter<'a> {
             return sorted;
         }
         let mut list = sorted.list;
-        let size = count.div_ceil(MOST_PARTS * WIDTH) * WIDTH;
+        let size = count.div_ceil(MOST_VOXELS * WIDTH) * WIDTH;
         into_parts(&self.extents, &mut list, size);
         let part = |start| Part { start, end: count.min(start + size) };
         let parts = (0..count).step_by(size).map(part).collect();

@@ -5,16 +5,12 @@
 
 use rayon::prelude::*;
 
-use super::SLOTS;
-use super::build::{FEW, WORTH_A_THREAD};
+use super::build::{FEW, MOST_VOXELS, WORTH_A_THREAD};
 use super::sort::Extent;
 use crate::occlusion::eight::WIDTH;
 
-/// Most parts of a list that is cut into full ones.
-pub(super) const MOST_PARTS: usize = SLOTS / 2;
-
-/// Most boxes between which a cut is sought: those of parts, or of single triangles.
-const MOST_BOXES: usize = if MOST_PARTS > FEW { MOST_PARTS } else { FEW };
+/// Most boxes between which a cut is sought: those of parts, one to a voxel, or of single triangles.
+const MOST_BOXES: usize = if MOST_VOXELS > FEW { MOST_VOXELS } else { FEW };
 
 /// The box of the middles of some triangles.
 pub(super) fn middles(extents: &[Extent], list: &[u32]) -> Extent {
@@ -26,7 +22,7 @@ pub(super) fn middles(extents: &[Extent], list: &[u32]) -> Extent {
     }
 }
 
-/// Sorts a list so that parts of `size`, of which the last may have less, are neighbours. At most [`MOST_PARTS`].
+/// Sorts a list so that parts of `size`, of which the last may have less, are neighbours. At most [`MOST_VOXELS`].
 pub(super) fn into_parts(extents: &[Extent], list: &mut [u32], size: usize) {
     if list.len() <= size {
         return;
@@ -172,12 +168,12 @@ mod tests {
     fn nothing_is_lost_and_two_heaps_are_taken_apart() {
         let long = two_heaps(720);
         // One heap has 240, the other 480, which parts of 24 divide.
-        for parts in [parts(&long, 24), eights(&two_heaps(FEW))] {
+        for (parts, count) in [(parts(&long, 24), 720), (eights(&two_heaps(FEW)), FEW)] {
             for part in &parts {
                 let first = place(part[0] as usize);
                 assert!(part.iter().all(|&number| place(number as usize) == first), "{part:?}");
             }
-            assert_nothing_is_lost(&parts, parts.concat().len());
+            assert_nothing_is_lost(&parts, count);
         }
     }
 
