@@ -145,6 +145,8 @@ impl Draft {
         let normals = if smooth { kept().map(sound_normals).collect() } else { Vec::new() };
         drop((opaque, seen_through, std::mem::take(&mut self.triangles)));
         self.drop_unsound_lights_and_camera();
+        let lights = self.lights.into_iter().map(Light::with_unit_vectors);
+        let lights = lights.map(|light| light.relative_to(origin));
 
         let mut scene = Scene {
             name: self.name,
@@ -152,7 +154,7 @@ impl Draft {
             normals,
             material_of,
             materials: self.materials,
-            lights: self.lights.into_iter().map(|light| light.relative_to(origin)).collect(),
+            lights: lights.collect(),
             camera: Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, 1.0),
             ambient: self.ambient,
             background: self.background,

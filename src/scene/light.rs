@@ -36,6 +36,19 @@ pub enum Light {
     },
 }
 
+/// A vector whose length is one but for the rounding of f32 is left as it is, bit for bit.
+const NEARLY_ONE: f64 = 1e-6;
+
+/// A vector of the same direction with length one; `None` if it has none.
+fn unit(vector: DVec3) -> Option<DVec3> {
+    if (vector.length() - 1.0).abs() < NEARLY_ONE {
+        return Some(vector);
+    }
+    // Squares of what is longest would overflow.
+    let longest = vector.abs().max_element();
+    if vector.is_finite() { (vector / longest).try_normalize() } else { None }
+}
+
 /// What a light sends to a point, shadows apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illumination {
@@ -92,20 +105,32 @@ impl Light {
         }
     }
 
-    /// Whether its numbers are finite and its colour is not negative.
+    /// Whether its numbers are finite, also in f32, its vectors point somewhere, and its colour is not negative.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         let colour = |colour: &Vec3| colour.is_finite() && colour.cmpge(Vec3::ZERO).all();
+        let place = |place: &DVec3| place.as_vec3().is_finite();
         match self {
-            Self::Point { position, intensity } => position.is_finite() && colour(intensity),
+            Self::Point { position, intensity } => place(position) && colour(intensity),
             Self::Spot { position, axis, intensity, inner, outer } => {
-                let vectors = position.is_finite() && axis.is_finite();
+                let vectors = place(position) && unit(*axis).is_some();
                 vectors && colour(intensity) && inner.is_finite() && outer.is_finite()
             }
             Self::Directional { direction, irradiance } => {
-                direction.is_finite() && colour(irradiance)
+                unit(*direction).is_some() && colour(irradiance)
             }
         }
+    }
+
+    /// The same light with vectors of length one.
+    #[must_use]
+    pub(super) fn with_unit_vectors(mut self) -> Self {
+        if let Self::Spot { axis: vector, .. } | Self::Directional { direction: vector, .. } =
+            &mut self
+        {
+            *vector = unit(*vector).unwrap_or(*vector);
+        }
+        self
     }
 
     /// The same light with its place moved by `-origin`.
@@ -115,5 +140,36 @@ impl Light {
             *position -= origin;
         }
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sun(direction: DVec3) -> Light {
+        Light::Directional { direction, irradiance: Vec3::ONE }
+    }
+
+    #[test]
+    fn directions_of_any_length_become_unit_vectors_and_unit_vectors_stay_as_they_are() {
+        let way = DVec3::new(3.0, 0.0, -4.0);
+        for length in [1e-300, 1e-30, 0.5, 1.1, 1e30, 1e300] {
+            let light = sun(length * way);
+            assert!(light.is_sound());
+            let Light::Directional { direction, .. } = light.with_unit_vectors() else { panic!() };
+            assert!((direction - way / 5.0).length() < 1e-15, "{length}: {direction}");
+        }
+        let rounded = Vec3::new(1.0, 2.0, 3.0).normalize().as_dvec3();
+        assert_eq!(sun(rounded).with_unit_vectors(), sun(rounded));
+    }
+
+    #[test]
+    fn what_points_nowhere_or_is_beyond_f32_is_no_light() {
+        for direction in [DVec3::ZERO, DVec3::NAN, DVec3::X * f64::INFINITY] {
+            assert!(!sun(direction).is_sound(), "{direction}");
+        }
+        let point = |x: f64| Light::Point { position: DVec3::X * x, intensity: Vec3::ONE };
+        assert!(point(1e38).is_sound() && !point(1e39).is_sound());
     }
 }
