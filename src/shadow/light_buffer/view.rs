@@ -49,7 +49,7 @@ pub(super) struct LightView {
     pub pad: f32,
     /// Of the cube: clusters that come nearer than this are not projected.
     pub near: f32,
-    /// Of the cube: queries from farther away are not answered.
+    /// Queries from farther away, by any axis, are not answered.
     reach: f32,
 }
 
@@ -79,7 +79,9 @@ impl LightView {
                     along: along.as_vec3(),
                     half: (half + 4.0 * pad) as f32,
                 };
-                (view, pad, f64::INFINITY)
+                // A query errs by some roundings of its way from the centre, and of that which its ray goes, as what is across is
+                // rounded too: within twice the scene, by less than half of what is padded.
+                (view, pad, 2.0 * half)
             }
         };
         let (pad, reach) = (pad as f32, reach as f32);
@@ -131,6 +133,10 @@ impl LightView {
                     return None;
                 }
                 let from = ray.origin - *centre;
+                // Not so if it is no number.
+                if !from.abs().cmple(Vec3::splat(self.reach)).all() {
+                    return None;
+                }
                 let inverse = half.recip();
                 let (u, v) = (across[0].dot(from) * inverse, across[1].dot(from) * inverse);
                 Some(Place { face: 0, u, v, depth: half - along.dot(from) })
