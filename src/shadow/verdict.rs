@@ -55,6 +55,10 @@ impl<V: Verdict> Verdict for Arc<V> {
         V::settle_many(self, light, queries, settled, tally);
     }
 
+    fn glass(&self) -> Option<&dyn Verdict> {
+        V::glass(self)
+    }
+
     fn memory(&self) -> usize {
         V::memory(self)
     }

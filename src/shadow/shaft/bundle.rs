@@ -166,7 +166,7 @@ pub(super) struct Bundle {
     pub open: [u16; PACKETS],
     /// A bit a packet that has such.
     open_packets: u16,
-    /// Largest coordinate of origins and light, in magnitude.
+    /// Largest coordinate of origins and light or, towards a direction, of all that is there, and of the centre: in magnitude.
     pub largest: f32,
 }
 
@@ -190,8 +190,15 @@ impl Bundle {
 
     /// Takes over queries; those that are not rays to this light are not asked. Gives the ground that they are on; `None`
     /// if none is asked, or if coordinates are so large or small that products of them could over- or underflow.
+    ///
+    /// `farthest` is the largest coordinate of all triangles.
     #[inline(always)]
-    pub fn fill<L: Lanes>(&mut self, source: &Source, queries: &Chosen<'_>) -> Option<Ground> {
+    pub fn fill<L: Lanes>(
+        &mut self,
+        source: &Source,
+        queries: &Chosen<'_>,
+        farthest: f32,
+    ) -> Option<Ground> {
         let packets = queries.count().div_ceil(PACKET);
         self.asked = [0; PACKETS];
         self.boxes = [OriginBox::EMPTY; 2 * PACKETS];
@@ -253,6 +260,10 @@ impl Bundle {
         let ground = known.unwrap_or_else(|| Ground::around(source, &all, self.largest));
         self.ground = Some(ground);
         let centre = ground.centre;
+        // The middle of ground that was made for a larger bundle may be farther away than all of this one; and rays that have no
+        // end may come to boxes that are.
+        let reached = if matches!(source, Source::Direction(_)) { farthest } else { 0.0 };
+        self.largest = self.largest.max(centre.abs().max_element()).max(reached);
         for rows in &mut self.origins[..packets] {
             for (row, centre) in rows.iter_mut().zip(centre.to_array()) {
                 L::Sixteen::load(&row.0).sub(L::Sixteen::splat(centre)).store(&mut row.0);

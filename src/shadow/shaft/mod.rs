@@ -63,7 +63,8 @@ pub(super) struct Shafts {
     /// Whether bundles that do not stay together are left to a light buffer.
     leaves_spread: bool,
     arithmetic: Arithmetic,
-    /// Walkers that nobody uses now; as many are made as threads ask at once, 150 KiB each and 16 bytes a query.
+    /// Walkers that nobody uses now; as many are made as threads ask at once, 150 KiB each and some 28 bytes a query
+    /// of the largest call.
     idle: Mutex<Vec<Box<Walker>>>,
 }
 
@@ -107,12 +108,14 @@ impl Shafts {
         tally: &mut Tally,
     ) {
         let source = &self.sources[light];
+        let farthest = clusters.farthest();
         let mut columns = std::mem::take(&mut walker.columns);
         let mut order = std::mem::take(&mut walker.order);
         self.arithmetic.run(Read { columns: &mut columns, source, queries });
         let mut walk = |places, leaves_spread| {
             let queries = Chosen::new(queries, &columns, places);
-            let around = Around { clusters, triangles: &self.triangles, queries, leaves_spread };
+            let triangles = &self.triangles;
+            let around = Around { clusters, triangles, queries, farthest, leaves_spread };
             if self.arithmetic.run(Walk { walker, source, around, tally }) {
                 walker.bundle.tell(places, settled);
             }

@@ -1,9 +1,15 @@
 //! The rays of a packet, for tests of one box by all of them: where a shaft is wider than a box.
 
-use super::bundle::{Chosen, PACKET};
+use super::bundle::{PACKET, Source};
+use super::columns::Row;
 use super::frustum::{PAD, inverse};
+use super::planes::Ground;
 use crate::geometry::lanes::Sixteen;
 use crate::occlusion::Node;
+
+/// An origin that is moved to the centre of the ground and back has been rounded twice, and with it the ray: that takes as much room
+/// again as all else.
+const PADS: f32 = 2.0;
 
 /// The rays of a packet, for tests of one box.
 #[derive(Clone, Copy)]
@@ -18,16 +24,22 @@ impl PacketRays {
     pub const EMPTY: Self =
         Self { origins: [[0.0; PACKET]; 3], inverses: [[0.0; PACKET]; 3], pad: 0.0, end: 0.0 };
 
-    /// Takes over the rays of up to a packet of queries, from `first` on.
+    /// Takes over the rays to a light from origins that are relative to a centre. Those that are not asked are rays too.
     #[inline(always)]
-    pub fn set(&mut self, queries: &Chosen, first: usize, largest: f32) {
-        self.pad = PAD * largest;
-        self.end = queries.ray(first).end;
-        for lane in 0..PACKET.min(queries.count() - first) {
-            let ray = queries.ray(first + lane);
-            for axis in 0..3 {
-                self.origins[axis][lane] = ray.origin[axis];
-                self.inverses[axis][lane] = ray.direction[axis];
+    pub fn set<S: Sixteen>(&mut self, ground: &Ground, origins: &[Row; 3], largest: f32) {
+        self.pad = PADS * PAD * largest;
+        self.end = match ground.source {
+            Source::Point(_) => 1.0,
+            Source::Direction(_) => f32::INFINITY,
+        };
+        for (axis, Row(row)) in origins.iter().enumerate() {
+            let origin = S::load(row).add(S::splat(ground.centre[axis]));
+            origin.store(&mut self.origins[axis]);
+            match ground.source {
+                Source::Point(light) => {
+                    S::splat(light[axis]).sub(origin).store(&mut self.inverses[axis]);
+                }
+                Source::Direction(direction) => self.inverses[axis] = [direction[axis]; PACKET],
             }
         }
         for inverses in &mut self.inverses {

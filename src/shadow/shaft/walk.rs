@@ -16,7 +16,7 @@ use super::rays::PacketRays;
 use crate::exact::Exact;
 use crate::geometry::Triangles;
 use crate::geometry::intersect::RayLanes;
-use crate::geometry::lanes::Lanes;
+use crate::geometry::lanes::{Lanes, Sixteen};
 use crate::occlusion::{Child, Clusters, Node, Tally, WIDTH};
 
 /// What is still to be visited: a node, by a part of the bundle.
@@ -54,6 +54,8 @@ pub(super) struct Around<'a> {
     pub clusters: &'a Clusters,
     pub triangles: &'a Triangles,
     pub queries: Chosen<'a>,
+    /// The largest coordinate of all triangles, in magnitude.
+    pub farthest: f32,
     /// Whether a bundle that does not stay together is passed on.
     pub leaves_spread: bool,
 }
@@ -82,7 +84,9 @@ impl Walker {
     /// Settles all queries to this light: those that stay open are lit. `false` if none is settled.
     #[inline(always)]
     pub fn walk<L: Lanes>(&mut self, source: &Source, around: &Around, tally: &mut Tally) -> bool {
-        let Some(ground) = &self.bundle.fill::<L>(source, &around.queries) else { return false };
+        let Some(ground) = &self.bundle.fill::<L>(source, &around.queries, around.farthest) else {
+            return false;
+        };
         if around.leaves_spread && self.bundle.is_spread(around.clusters.typical_extent()) {
             return false;
         }
@@ -131,10 +135,11 @@ impl Walker {
 
     /// The rays of a packet.
     #[inline(always)]
-    fn rays_of(&mut self, packet: usize, around: &Around) -> &PacketRays {
+    fn rays_of<S: Sixteen>(&mut self, packet: usize, ground: &Ground) -> &PacketRays {
         if self.rays_known & (1 << packet) == 0 {
             self.rays_known |= 1 << packet;
-            self.rays[packet].set(&around.queries, packet * PACKET, self.bundle.largest);
+            let Bundle { origins, largest, .. } = &self.bundle;
+            self.rays[packet].set::<S>(ground, &origins[packet], *largest);
         }
         &self.rays[packet]
     }
@@ -201,7 +206,7 @@ impl Walker {
             let child = node.child(slot);
             // A shaft that is no wider than the box meets it with most of its rays.
             let rays = if found.narrower & (1 << slot) != 0 {
-                open & self.rays_of(packet, around).meet::<L::Sixteen>(node, slot)
+                open & self.rays_of::<L::Sixteen>(packet, ground).meet::<L::Sixteen>(node, slot)
             } else {
                 open
             };
