@@ -2,10 +2,12 @@
 
 mod common;
 
-use std::sync::Arc;
+use std::sync::{Arc, mpsc};
+use std::time::Duration;
 
 use common::{Aim, Random, soup, sphere};
 use glam::Vec3;
+use rayon::{Scope, ThreadPoolBuilder};
 use umbra::geometry::lanes::Scalar;
 use umbra::geometry::{Ray, Triangle, Triangles};
 use umbra::occlusion::{
@@ -68,6 +70,30 @@ fn threads_that_come_to_a_voxel_at_once_get_the_same_answers() {
             }
         });
     }
+}
+
+#[test]
+fn a_worker_never_takes_in_a_ray_while_it_divides_the_voxel_that_the_ray_comes_to() {
+    // Else it waits for itself, for ever. One voxel that would be worth several threads, and rays that come to it meanwhile.
+    let (finished, wait) = mpsc::channel();
+    std::thread::spawn(move || {
+        let mesh = soup(50_000, 0.05, 6);
+        let triangles = triangles(&mesh);
+        let across = Ray::between(Vec3::splat(-1.0), Vec3::ONE);
+        let pool = ThreadPoolBuilder::new().num_threads(8).build().unwrap();
+        for _ in 0..5 {
+            let lazy = engine(&triangles, GridOptions { resolution: Some([1; 3]), ..LAZY });
+            let ask = |_: &Scope<'_>| assert!(lazy.occluded(&across, &mut Tally::default()));
+            pool.scope(|scope| {
+                scope.spawn(ask);
+                // The voxel is being divided when the others come.
+                std::thread::sleep(Duration::from_millis(3));
+                (0..100).for_each(|_| scope.spawn(ask));
+            });
+        }
+        finished.send(()).unwrap();
+    });
+    wait.recv_timeout(Duration::from_mins(1)).expect("workers wait, or an answer is wrong");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Sorting triangles into voxels.
 
-use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
@@ -9,8 +9,8 @@ use super::voxelize::overlapped;
 use super::{Grid, TooFine};
 use crate::geometry::{TriangleId, Triangles};
 
-/// Builds a grid with at most so many entries; ids ascend in each list.
-pub(super) fn build(triangles: &Triangles, level: Level, most: usize) -> Result<Grid, TooFine> {
+/// Builds a grid with at most so many entries, which places in the order can count; ids ascend in each list.
+pub(super) fn build(triangles: &Triangles, level: Level, most: u32) -> Result<Grid, TooFine> {
     let counts: Vec<AtomicU32> = (0..level.voxel_count()).map(|_| AtomicU32::new(0)).collect();
     count(triangles, &level, &counts, most)?;
     let mut lists = Vec::with_capacity(counts.len());
@@ -45,9 +45,9 @@ fn count(
     triangles: &Triangles,
     level: &Level,
     counts: &[AtomicU32],
-    most: usize,
+    most: u32,
 ) -> Result<(), TooFine> {
-    let (entries, tried) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let (most, entries, tried) = (u64::from(most), AtomicU64::new(0), AtomicUsize::new(0));
     (0..triangles.len() as TriangleId).into_par_iter().for_each(|id| {
         if entries.load(Relaxed) > most {
             return;
@@ -101,11 +101,11 @@ mod tests {
         let options =
             GridOptions { resolution: Some([8, 8, 1]), nested: false, ..GridOptions::default() };
         let grid = Grid::of_resolution(&triangles, options).unwrap();
-        let entries = grid.order.len();
+        let entries = grid.order.len() as u32;
         assert!((32_000..=64_000).contains(&entries), "{entries}");
         assert!(build(&triangles, grid.level.clone(), entries).is_ok());
         let refused = build(&triangles, grid.level.clone(), entries / 10).err().unwrap();
-        assert_eq!((refused.resolution, refused.entries), ([8, 8, 1], entries as u64));
+        assert_eq!((refused.resolution, refused.entries), ([8, 8, 1], u64::from(entries)));
         assert!(refused.to_string().contains("8x8x1 voxels would list triangles some"));
     }
 }

@@ -7,9 +7,11 @@
 //! order. So a cache of voxels remembers the outer voxel, if it is not too large, and else none.
 //!
 //! Sound under threads: a voxel's cell is written once, and whoever comes while another thread divides
-//! it waits. What a voxel is divided into depends on its triangles alone, so it does not matter which
-//! ray comes first, unless memory runs out: then voxels stay as they are. Exact for the reasons that the other
-//! grids are.
+//! it waits. Nobody waits for ever, for a thread that divides a voxel for a ray does so alone. Were it to share the work
+//! out, it would take in other work while it waits for the others, and that may be a ray that comes to the same voxel, or to
+//! one whose thread waits for this one. What a voxel is divided into depends on its triangles alone, so it does not
+//! matter which ray comes first, unless memory runs out: then voxels stay as they are. Exact for the reasons that
+//! the other grids are.
 //!
 //! Jevans, Wyvill: Adaptive Voxel Subdivision for Ray Tracing. Graphics Interface 1989.
 
@@ -20,6 +22,7 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::nested::Threads;
 use super::{Grid, GridOptions, NestedGrid, Steps, TooFine};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
@@ -65,8 +68,13 @@ impl DividedGrid {
         let grid = Self { triangles: triangles.clone(), outer, insides, left };
         if !options.lazy {
             (0..grid.outer.voxel_count()).into_par_iter().for_each(|voxel| {
-                if let Some(list) = grid.outer.list_of(voxel) {
-                    let _ = grid.inside(voxel, list, grid.listed(voxel));
+                let triangles = grid.listed(voxel);
+                if let Some(list) = grid.outer.list_of(voxel)
+                    && triangles.len() > CROWDED
+                {
+                    // Outside of the cell, which no ray comes to yet: so threads may help each other.
+                    let inside = grid.divide(voxel, triangles, Threads::Many);
+                    let _ = grid.insides[list].set(inside);
                 }
             });
         }
@@ -95,18 +103,23 @@ impl DividedGrid {
         if triangles.len() <= CROWDED {
             return None;
         }
-        self.insides[list].get_or_init(|| self.divide(voxel, triangles)).as_deref()
+        self.insides[list].get_or_init(|| self.divide(voxel, triangles, Threads::One)).as_deref()
     }
 
     #[cold]
-    fn divide(&self, voxel: usize, triangles: &[TriangleId]) -> Option<Box<NestedGrid>> {
+    fn divide(
+        &self,
+        voxel: usize,
+        triangles: &[TriangleId],
+        threads: Threads,
+    ) -> Option<Box<NestedGrid>> {
         let level = self.outer.level();
         let [width, height, _] = level.resolution.map(|n| n as usize);
         let place = [voxel % width, voxel / width % height, voxel / (width * height)];
         // The walk around may err as much as the padding allows.
         let low = level.corner(place.map(|n| n as u32)) - level.pad;
         let high = low + level.side + DVec3::splat(2.0 * level.pad);
-        let grid = NestedGrid::within(&self.triangles, triangles, low, high)?;
+        let grid = NestedGrid::within(&self.triangles, triangles, low, high, threads)?;
         let bytes = bytes_of(&grid) as u64;
         let without = |left: u64| left.checked_sub(bytes);
         self.left.fetch_update(Relaxed, Relaxed, without).is_ok().then(|| Box::new(grid))

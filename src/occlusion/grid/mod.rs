@@ -49,7 +49,7 @@ const NESTED_DENSITY: f64 = 0.5;
 const MOST_ENTRIES: usize = 64;
 
 /// Entries of a grid whose resolution is asked for: they take 4 GiB.
-const MOST_ENTRIES_ASKED: usize = 1 << 30;
+const MOST_ENTRIES_ASKED: u32 = 1 << 30;
 
 /// Most voxels along one axis.
 const MOST_VOXELS: f64 = 1024.0;
@@ -136,7 +136,7 @@ impl Grid {
                 build::build(triangles, level, MOST_ENTRIES_ASKED)
             }
             None => {
-                let most = MOST_ENTRIES * triangles.len();
+                let most = most_entries(triangles.len());
                 let mut resolution = None;
                 loop {
                     let level = Self::place(triangles, resolution, density);
@@ -240,10 +240,30 @@ impl Walk for Grid {
     }
 }
 
+/// Entries of a grid over so many triangles whose resolution is not asked for. Places in its order are [`u32`], which is
+/// enough for each triangle to lie in one voxel, so a grid that is coarse enough is never refused.
+fn most_entries(triangles: usize) -> u32 {
+    u32::try_from(MOST_ENTRIES.saturating_mul(triangles)).unwrap_or(u32::MAX)
+}
+
 /// Voxels along each axis of a box, about as many in all as asked for.
 fn resolution(extent: DVec3, voxels: f64) -> [u32; 3] {
     // Thin boxes count as this thick, so that voxels stay near cubes.
     let extent = extent.max(DVec3::splat(extent.max_element() / MOST_VOXELS));
     let per_length = (voxels / extent.element_product()).cbrt();
     (extent * per_length).to_array().map(|n| n.ceil().clamp(1.0, MOST_VOXELS) as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_are_never_more_than_there_are_places_for() {
+        assert_eq!(most_entries(1000), 64_000);
+        assert_eq!(most_entries((1 << 26) - 1), u32::MAX - 63);
+        for triangles in [1 << 26, u32::MAX as usize, usize::MAX] {
+            assert_eq!(most_entries(triangles), u32::MAX, "{triangles}");
+        }
+    }
 }

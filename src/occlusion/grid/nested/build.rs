@@ -19,7 +19,7 @@ use super::cut::{into_eights, into_parts, middles};
 use super::group::{GROUP, Group};
 use super::sort::{Extent, Lattice};
 use super::walk::MOST_DEPTH;
-use super::{Cube, MOST, NestedGrid, Node, SLOTS};
+use super::{Cube, MOST, NestedGrid, Node, SLOTS, Threads};
 use crate::geometry::lanes::Arithmetic;
 use crate::geometry::{TriangleId, Triangles, is_finite};
 use crate::occlusion::Eight;
@@ -49,14 +49,11 @@ const SIZES: usize = LARGE.len() + 1;
 /// 2³² triangles, and one more for what does not find room.
 const CUT_FROM: usize = MOST_DEPTH - 8;
 
-/// Lists longer than this are sorted by several threads.
-pub(super) const WORTH_A_THREAD: usize = 4096;
-
 /// Sorts all triangles.
 pub(super) fn build(triangles: &Triangles) -> NestedGrid {
     let all: Vec<TriangleId> = (0..triangles.len() as TriangleId).collect();
     let cube = Cube::over(triangles);
-    Sorter::new(triangles, cube, &all, Extent::ALL).build()
+    Sorter::new(triangles, cube, &all, Extent::ALL, Threads::Many).build()
 }
 
 /// Sorts some of the triangles, and only where they are in a box of the scene.
@@ -65,11 +62,13 @@ pub(super) fn divide(
     list: &[TriangleId],
     low: DVec3,
     high: DVec3,
+    threads: Threads,
 ) -> Option<NestedGrid> {
     let cube = Cube::over(triangles);
     let place = |corner| cube.place(corner).as_vec3a();
     let around = Extent { low: place(low) - cube.padding, high: place(high) + cube.padding };
-    (list.len() > LEAST_DIVIDED).then(|| Sorter::new(triangles, cube, list, around).build())
+    let sorter = || Sorter::new(triangles, cube, list, around, threads);
+    (list.len() > LEAST_DIVIDED).then(|| sorter().build())
 }
 
 /// A grid in the making.
@@ -148,16 +147,24 @@ struct Sorter<'a> {
     /// The triangles that are finite, and their boxes in the cube.
     ids: Vec<TriangleId>,
     extents: Vec<Extent>,
+    threads: Threads,
 }
 
 impl<'a> Sorter<'a> {
-    fn new(triangles: &'a Triangles, cube: Cube, list: &[TriangleId], around: Extent) -> Self {
+    fn new(
+        triangles: &'a Triangles,
+        cube: Cube,
+        list: &[TriangleId],
+        around: Extent,
+        threads: Threads,
+    ) -> Self {
         let finite = |id: &&TriangleId| is_finite(&triangles.get(**id));
-        let ids: Vec<TriangleId> = list.par_iter().filter(finite).copied().collect();
+        let shared = list.par_iter().with_min_len(threads.least());
+        let ids: Vec<TriangleId> = shared.filter(finite).copied().collect();
         let place = |corner: Vec3A| cube.place(corner.as_dvec3()).as_vec3a();
         let extent = |&id: &TriangleId| Extent::of(&triangles.corners()[id as usize].map(place));
-        let extents = ids.par_iter().map(extent).collect();
-        Self { triangles, cube, around, ids, extents }
+        let extents = ids.par_iter().with_min_len(threads.least()).map(extent).collect();
+        Self { triangles, cube, around, ids, extents, threads }
     }
 
     fn build(self) -> NestedGrid {
@@ -169,16 +176,14 @@ impl<'a> Sorter<'a> {
     /// The grid of a list of triangles.
     fn grid(&self, list: Vec<u32>, level: usize) -> Grid {
         let voxels = MOST_VOXELS.min(list.len() / PER_VOXEL).max(1);
-        let lattice = Lattice::over(middles(&self.extents, &list), voxels);
+        let lattice = Lattice::over(middles(&self.extents, &list, self.threads), voxels);
         let Sorted { mut list, parts } = self.sorted(&lattice, list, level);
         let divide = |part: &Part| {
             (part.len() > FEW).then(|| self.grid(list[part.range()].to_vec(), level + 1))
         };
-        let divided: Vec<Option<Grid>> = if list.len() > WORTH_A_THREAD {
-            parts.par_iter().map(divide).collect()
-        } else {
-            parts.iter().map(divide).collect()
-        };
+        // One by one if they are worth threads together.
+        let least = if list.len() > self.threads.least() { 1 } else { usize::MAX };
+        let divided: Vec<_> = parts.par_iter().with_min_len(least).map(divide).collect();
         let mut slots = Vec::with_capacity(SLOTS);
         let mut room = SLOTS - parts.len();
         for (part, inside) in parts.iter().zip(divided) {
@@ -210,7 +215,7 @@ impl<'a> Sorter<'a> {
         }
         let mut list = sorted.list;
         let size = count.div_ceil(MOST_VOXELS * WIDTH) * WIDTH;
-        into_parts(&self.extents, &mut list, size);
+        into_parts(&self.extents, &mut list, size, self.threads);
         let part = |start| Part { start, end: count.min(start + size) };
         let parts = (0..count).step_by(size).map(part).collect();
         Sorted { list, parts }
@@ -250,11 +255,8 @@ impl<'a> Sorter<'a> {
             let size = LARGE.iter().filter(|&&large| length > large).count();
             Place { voxel: lattice.voxel_of(extent.middle()) as u8, size: size as u8 }
         };
-        let places: Vec<Place> = if list.len() > WORTH_A_THREAD {
-            list.par_iter().map(place).collect()
-        } else {
-            list.iter().map(place).collect()
-        };
+        let shared = list.par_iter().with_min_len(self.threads.least());
+        let places: Vec<Place> = shared.map(place).collect();
         let apart_from = self.apart_from(&list, &places);
         let part = |place: &Place| {
             if usize::from(place.size) >= apart_from { VOXELS } else { usize::from(place.voxel) }
@@ -318,7 +320,7 @@ impl<'a> Sorter<'a> {
         let arithmetic = Arithmetic::of_this_cpu();
         let (ids, _) = grid.order.as_chunks::<WIDTH>();
         let eight = |ids| Eight::new(self.triangles, ids, arithmetic);
-        grid.eights = ids.par_iter().map(eight).collect();
+        grid.eights = ids.par_iter().with_min_len(self.threads.least()).map(eight).collect();
         grid
     }
 

@@ -5,7 +5,8 @@
 
 use rayon::prelude::*;
 
-use super::build::{FEW, MOST_VOXELS, WORTH_A_THREAD};
+use super::Threads;
+use super::build::{FEW, MOST_VOXELS};
 use super::sort::Extent;
 use crate::occlusion::eight::WIDTH;
 
@@ -13,30 +14,28 @@ use crate::occlusion::eight::WIDTH;
 const MOST_BOXES: usize = if MOST_VOXELS > FEW { MOST_VOXELS } else { FEW };
 
 /// The box of the middles of some triangles.
-pub(super) fn middles(extents: &[Extent], list: &[u32]) -> Extent {
+pub(super) fn middles(extents: &[Extent], list: &[u32], threads: Threads) -> Extent {
     let middle = |&index: &u32| Extent::at(extents[index as usize].middle());
-    if list.len() > WORTH_A_THREAD {
-        list.par_iter().map(middle).reduce(|| Extent::EMPTY, Extent::union)
-    } else {
-        list.iter().map(middle).fold(Extent::EMPTY, Extent::union)
-    }
+    let shared = list.par_iter().with_min_len(threads.least());
+    shared.map(middle).reduce(|| Extent::EMPTY, Extent::union)
 }
 
 /// Sorts a list so that parts of `size`, of which the last may have less, are neighbours. At most [`MOST_VOXELS`].
-pub(super) fn into_parts(extents: &[Extent], list: &mut [u32], size: usize) {
+pub(super) fn into_parts(extents: &[Extent], list: &mut [u32], size: usize, threads: Threads) {
     if list.len() <= size {
         return;
     }
-    let Extent { low, high } = middles(extents, list);
+    let Extent { low, high } = middles(extents, list, threads);
     let mut keys = vec![0; list.len()];
     sort(extents, list, (high - low).max_position(), &mut keys);
     put_in_order(list, &keys);
     let (left, right) = list.split_at_mut(cheapest(extents, &keys, size, size).at);
-    if left.len() + right.len() > WORTH_A_THREAD {
-        rayon::join(|| into_parts(extents, left, size), || into_parts(extents, right, size));
+    let on = |part: &mut [u32]| into_parts(extents, part, size, threads);
+    if left.len() + right.len() > threads.least() {
+        rayon::join(|| on(left), || on(right));
     } else {
-        into_parts(extents, left, size);
-        into_parts(extents, right, size);
+        on(left);
+        on(right);
     }
 }
 
@@ -147,7 +146,7 @@ mod tests {
 
     fn parts(extents: &[Extent], size: usize) -> Vec<Vec<u32>> {
         let mut list: Vec<u32> = (0..extents.len() as u32).collect();
-        into_parts(extents, &mut list, size);
+        into_parts(extents, &mut list, size, Threads::Many);
         list.chunks(size).map(<[u32]>::to_vec).collect()
     }
 

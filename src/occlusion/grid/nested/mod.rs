@@ -56,6 +56,25 @@ const MOST: u32 = 4;
 /// Things that the voxels of one grid may hold: a bit each.
 const SLOTS: usize = 64;
 
+/// Who sorts triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Threads {
+    /// All that there are, where lists are long. Whoever waits for the others takes in any work that it finds.
+    Many,
+    /// Whoever asks, and does nothing else meanwhile.
+    One,
+}
+
+impl Threads {
+    /// Lists of fewer are not worth a further thread.
+    fn least(self) -> usize {
+        match self {
+            Self::Many => 4096,
+            Self::One => usize::MAX,
+        }
+    }
+}
+
 /// The unit cube that a scene or a part of it is mapped to.
 #[derive(Clone, Copy, Debug)]
 struct Cube {
@@ -130,15 +149,16 @@ impl NestedGrid {
         build::build(triangles)
     }
 
-    /// The same for some of the triangles, and only where they are in a box; `None` if that would gain nothing over
-    /// testing all of them.
+    /// The same for some of the triangles, by one thread or many, and only where they are in a box; `None` if that
+    /// would gain nothing over testing all of them.
     pub(super) fn within(
         triangles: &Triangles,
         list: &[TriangleId],
         low: DVec3,
         high: DVec3,
+        threads: Threads,
     ) -> Option<Self> {
-        build::divide(triangles, list, low, high)
+        build::divide(triangles, list, low, high, threads)
     }
 
     /// Number of grids.
