@@ -13,6 +13,8 @@ mod collapse;
 mod divide;
 mod few;
 mod node;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use node::{Child, Node};
 
