@@ -110,3 +110,19 @@ fn many_triangles_in_one_place_or_a_row_or_a_plane_are_built() {
         spread(150_000).into_iter().map(|triangle| triangle.map(|corner| corner.with_z(0.5)));
     assert_holds_finite_ones(&flat.collect::<Vec<_>>());
 }
+
+#[test]
+fn triangles_that_are_not_finite_are_in_no_cluster_and_take_none_with_them() {
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for count in COUNTS {
+            for axis in 0..3 {
+                let mut triangles = spread(count);
+                for number in [1, count / 2, count - 1] {
+                    triangles[number][number % 3][axis] = bad;
+                }
+                assert_holds_finite_ones(&triangles);
+            }
+        }
+    }
+    assert_holds_finite_ones(&[[Vec3::NAN; 3]; 20]);
+}
