@@ -100,7 +100,9 @@ impl DeviceConfig {
     /// Be told of every allocation (bytes > 0) and release (bytes < 0), from any thread, several at once.
     ///
     /// [`ControlFlow::Break`] on an allocation cancels the build at hand with [`ErrorCode::OutOfMemory`]; on a release it
-    /// means nothing. A panic cancels likewise, and goes on from the call that was cancelled.
+    /// means nothing. A panic cancels likewise, and goes on from the next call that looks for errors of this device. That is the
+    /// one that was cancelled, unless several threads use the device at once: then it may be another's, and the one that was
+    /// cancelled reports an error.
     pub fn memory_monitor(
         mut self,
         monitor: impl Fn(isize) -> ControlFlow<()> + Send + Sync + 'static,
@@ -198,7 +200,8 @@ impl Device {
         self.0.raw
     }
 
-    /// The first error this thread met on this device since the last look. Goes on with a memory monitor's panic.
+    /// The first error this thread met on this device since the last look. Goes on with a memory monitor's panic, whichever
+    /// thread's it was: Embree calls the monitor on threads of its own, and does not say for which build.
     pub(crate) fn take_error(&self) -> Result<(), Error> {
         // SAFETY: the device is alive.
         let code = unsafe { self.0.library.api.rtcGetDeviceError(self.0.raw) };

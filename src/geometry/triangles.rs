@@ -25,6 +25,7 @@ pub fn is_finite(triangle: &Triangle) -> bool {
 pub struct Triangles {
     corners: Vec<[Vec3A; 3]>,
     opaque: u32,
+    finite: usize,
     bounds: Option<Bounds>,
     slack: f64,
 }
@@ -45,9 +46,9 @@ impl Triangles {
         let opaque = count(corners.len());
         corners.extend(transparent.into_iter().map(pad));
         count(corners.len());
-        let bounds = bounds(&corners);
+        let (finite, bounds) = finite(&corners);
         let slack = vicinity::slack(bounds.unwrap_or_default().largest_coordinate());
-        Self { corners, opaque, bounds, slack }
+        Self { corners, opaque, finite, bounds, slack }
     }
 
     /// Number of triangles.
@@ -95,6 +96,12 @@ impl Triangles {
         Bounds::of(self.get(id))
     }
 
+    /// Whether all of them are [finite](is_finite).
+    #[must_use]
+    pub fn are_finite(&self) -> bool {
+        self.finite == self.corners.len()
+    }
+
     /// The box of all triangles that are [finite](is_finite); `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
@@ -123,11 +130,15 @@ impl FromIterator<Triangle> for Triangles {
     }
 }
 
-fn bounds(corners: &[[Vec3A; 3]]) -> Option<Bounds> {
-    let finite = corners.iter().filter(|corners| corners.iter().all(|corner| corner.is_finite()));
-    let mut corners = finite.flatten().copied();
-    let first = corners.next()?;
-    let (min, max) =
-        corners.fold((first, first), |(min, max), corner| (min.min(corner), max.max(corner)));
-    Some(Bounds { min: min.into(), max: max.into() })
+/// How many triangles are finite, and the box of these.
+fn finite(triangles: &[[Vec3A; 3]]) -> (usize, Option<Bounds>) {
+    let (mut count, mut min, mut max) = (0, Vec3A::INFINITY, Vec3A::NEG_INFINITY);
+    for &[a, b, c] in triangles {
+        if a.is_finite() && b.is_finite() && c.is_finite() {
+            count += 1;
+            min = min.min(a).min(b).min(c);
+            max = max.max(a).max(b).max(c);
+        }
+    }
+    (count, (count > 0).then(|| Bounds { min: min.into(), max: max.into() }))
 }

@@ -7,8 +7,8 @@ use super::{Budget, VerdictSet};
 use crate::occlusion::Clusters;
 use crate::scene::Scene;
 
-/// Bytes of clusters and their tree: to a triangle (they turn out to take about 51, and 56 where things are small and apart), and
-/// besides.
+/// Bytes of clusters and their tree before they are built: to a triangle (they turn out to take about 51, and 56 where things are small
+/// and apart; to almost 90 where these are heaps of one triangle more than a cluster has), and besides.
 const CLUSTER_BYTES: [usize; 2] = [60, 1024];
 
 /// The scene, the memory that is left, and what several verdicts use.
@@ -57,11 +57,14 @@ impl<'a> Stock<'a> {
     ) -> Option<Arc<Clusters>> {
         let [a_triangle, besides] = CLUSTER_BYTES;
         let estimate = a_triangle * count + besides;
-        self.budget.take(estimate).then(|| {
-            let clusters = make();
-            self.budget.give_back(estimate.saturating_sub(clusters.memory()));
-            Arc::new(clusters)
-        })
+        if !self.budget.take(estimate) {
+            return None;
+        }
+        let clusters = make();
+        let bytes = clusters.memory();
+        let suffices = self.budget.take(bytes.saturating_sub(estimate));
+        self.budget.give_back(if suffices { estimate.saturating_sub(bytes) } else { estimate });
+        suffices.then(|| Arc::new(clusters))
     }
 
     /// Clusters of the transparent triangles, if there are any and the memory suffices; and their bytes.
@@ -77,5 +80,44 @@ impl<'a> Stock<'a> {
     /// The one light buffer of all sets of verdicts that have it.
     pub fn light_buffer(&self) -> Arc<LightBuffer> {
         self.shared.light_buffer.get_or_init(|| Arc::new(LightBuffer::new(self))).clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::geometry::Triangles;
+
+    /// Heaps of nine triangles, one more than a cluster has, and far apart: they take more than other triangles.
+    fn heaps() -> Scene {
+        let heap = |number: u16| {
+            let steps = Vec3::new(0.618_034, 0.754_877_7, 0.819_172_5);
+            let place = 1e5 * (steps * f32::from(number)).fract();
+            [[place, place + Vec3::X, place + Vec3::Y]; 9]
+        };
+        let triangles = Triangles::new((0..1000).flat_map(heap), []);
+        Scene { triangles: triangles.into(), ..crate::scene::load("jittered-dense").unwrap() }
+    }
+
+    #[test]
+    fn clusters_that_turn_out_larger_than_estimated_are_paid_for_or_dropped() {
+        let scene = heaps();
+        let [a_triangle, besides] = CLUSTER_BYTES;
+        let estimate = a_triangle * scene.triangles.len() + besides;
+        let truth = Clusters::new(&scene.triangles).memory();
+        assert!(truth > estimate);
+        let stock =
+            |bytes| Stock::new(&scene, Arc::new(Budget::new(bytes as u64)), VerdictSet::NONE);
+        for bytes in [estimate, truth - 1] {
+            let stock = stock(bytes);
+            assert!(matches!(stock.clusters(), (None, 0)), "{bytes} of {truth} bytes");
+            assert_eq!(stock.budget.left(), bytes as u64);
+        }
+        let stock = stock(truth + 5);
+        let (clusters, bytes) = stock.clusters();
+        assert!(clusters.is_some() && bytes == truth);
+        assert_eq!(stock.budget.left(), 5);
     }
 }

@@ -258,15 +258,25 @@ impl Sixteen for Zmm {
     }
 }
 
-#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-fn run_avx2<K: Kernel>(kernel: K) -> K::Answer {
-    kernel.run()
+/// What runs a kernel with these features, and whether this CPU has them: of one list, so that what is compiled for is looked for.
+macro_rules! with_features {
+    ($run:ident, $is_available:ident: $($feature:tt),+) => {
+        $(#[target_feature(enable = $feature)])+
+        fn $run<K: Kernel>(kernel: K) -> K::Answer {
+            kernel.run()
+        }
+
+        pub(super) fn $is_available() -> bool {
+            $(is_x86_feature_detected!($feature))&&+
+        }
+    };
 }
 
-#[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-fn run_avx512<K: Kernel>(kernel: K) -> K::Answer {
-    kernel.run()
-}
+with_features!(run_avx2, has_avx2: "avx2", "fma", "bmi1", "bmi2", "lzcnt", "popcnt");
+with_features!(
+    run_avx512, has_avx512:
+    "avx512f", "avx512vl", "avx2", "fma", "bmi1", "bmi2", "lzcnt", "popcnt"
+);
 
 /// 8 rows of (x, y, z, _) as x, y and z, by halves of 128 bits.
 #[inline(always)]

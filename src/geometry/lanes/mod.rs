@@ -189,9 +189,9 @@ pub fn cross<L: Lanes>(a: Vector<L>, b: Vector<L>) -> Vector<L> {
 pub enum Arithmetic {
     /// Products and sums rounded apart, `rcpps`: SSE2 to AVX.
     Sse,
-    /// Fused multiply-add, `rcpps`: AVX2 with FMA.
+    /// Fused multiply-add, `rcpps`: AVX2 with FMA and the instructions for bits that came with it.
     Avx2,
-    /// Fused multiply-add, `vrcp14ps`: AVX-512 F and VL.
+    /// Fused multiply-add, `vrcp14ps`: AVX-512 F and VL, and all of AVX2's.
     Avx512,
 }
 
@@ -205,13 +205,8 @@ impl Arithmetic {
         #[cfg(target_arch = "x86_64")]
         match self {
             Self::Sse => true,
-            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
-            Self::Avx512 => {
-                is_x86_feature_detected!("avx512f")
-                    && is_x86_feature_detected!("avx512vl")
-                    && is_x86_feature_detected!("avx2")
-                    && is_x86_feature_detected!("fma")
-            }
+            Self::Avx2 => avx::has_avx2(),
+            Self::Avx512 => avx::has_avx512(),
         }
         #[cfg(not(target_arch = "x86_64"))]
         {

@@ -6,7 +6,7 @@ use super::{Kernel, Lanes, Several};
 use crate::geometry::{Ray, TriangleId};
 
 /// One f32 with the arithmetic of a lane: `FUSED` multiply-add or not, and, where `FUSED`, the
-/// reciprocal of AVX-512 (`RCP14`) or of AVX2.
+/// reciprocal of AVX-512 (`RCP14`) or of AVX2. The first panics on processors of x86 that lack it.
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar<const FUSED: bool, const RCP14: bool>(pub f32);
 
@@ -139,7 +139,8 @@ fn approximate(value: f32) -> f32 {
 #[inline(always)]
 fn approximate_14(value: f32) -> f32 {
     use std::arch::x86_64::{_mm_cvtss_f32, _mm_rcp14_ss, _mm_set_ss};
-    // SAFETY: `RCP14` arithmetic is only chosen where `Arithmetic::Avx512` is available.
+    assert!(is_x86_feature_detected!("avx512f"), "this CPU has no reciprocal of AVX-512");
+    // SAFETY: the instruction is part of AVX-512 F, which is there.
     unsafe { _mm_cvtss_f32(_mm_rcp14_ss(_mm_set_ss(value), _mm_set_ss(value))) }
 }
 

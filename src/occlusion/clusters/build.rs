@@ -19,21 +19,35 @@ use super::divide::{Around, Divided, Item, divide, places_of};
 use super::few::{self, FEW};
 use super::{Cluster, Clusters, Node, WIDTH};
 use crate::geometry::lanes::Arithmetic;
-use crate::geometry::{TriangleId, Triangles};
+use crate::geometry::{TriangleId, Triangles, is_finite};
 use crate::occlusion::Eight;
 
 /// Ranges with fewer triangles are split by one thread.
 const WORTH_A_THREAD: usize = 8192;
 
+/// Of these triangles, without those that are not finite: they block nothing, and no box is around a NaN.
 pub(super) fn build(triangles: &Triangles, ids: Range<TriangleId>) -> Clusters {
+    if triangles.are_finite() {
+        return build_by_numbers(triangles, ids.len(), |number| ids.start + number as TriangleId);
+    }
+    let finite: Vec<TriangleId> = ids.filter(|&id| is_finite(&triangles.get(id))).collect();
+    build_by_numbers(triangles, finite.len(), |number| finite[number])
+}
+
+/// Of so many triangles, each of which `id` gives by its number.
+fn build_by_numbers(
+    triangles: &Triangles,
+    count: usize,
+    id: impl Fn(usize) -> TriangleId,
+) -> Clusters {
     let arithmetic = Arithmetic::of_this_cpu();
     let item = |number| {
-        let id = ids.start + number as u32;
+        let id = id(number);
         Item::new(triangles.corners()[id as usize], id)
     };
     let arranging = Arranging { arithmetic };
-    let mut items = vec![Item(Around::NOTHING); ids.len()];
-    let tree = if ids.len() < MANY {
+    let mut items = vec![Item(Around::NOTHING); count];
+    let tree = if count < MANY {
         items.iter_mut().enumerate().for_each(|(number, slot)| *slot = item(number));
         if items.is_empty() {
             return Clusters::default();

@@ -70,10 +70,13 @@ impl Cells {
         let mut bits = [0; 3];
         let mut side = bounds.extent();
         for _ in 0..(count / A_CELL).max(1).ilog2().min(MOST_BITS) {
-            let divisible = Vec3::from(bits.map(|bits| f32::from(bits < MOST_ALONG_BITS)));
-            let axis = (side * divisible).max_position();
+            let axis = side.max_position();
+            // No axis is left that may be divided and has a length, or that is a number: sums of places may be infinite.
+            if side[axis].is_nan() || side[axis] <= 0.0 {
+                break;
+            }
             bits[axis] += 1;
-            side[axis] *= 0.5;
+            side[axis] = if bits[axis] < MOST_ALONG_BITS { 0.5 * side[axis] } else { 0.0 };
         }
         let along = Vec3::from(bits.map(|bits| (1u32 << bits) as f32));
         let scale = along / bounds.extent();
@@ -82,7 +85,7 @@ impl Cells {
             bits,
             // The fourth coordinate of an item is its number in bits, and some processors are slow to multiply those.
             low: bounds.min.extend(-1.0),
-            // Where the box is flat, all are in the first cell.
+            // Where the box is flat or has no length in f32, all are in the first cell, or where they are infinite in the last.
             scale: Vec3::select(scale.is_finite_mask(), scale, Vec3::ZERO).extend(0.0),
             last: (along - 1.0).extend(0.0),
             counts: vec![0; cells],

@@ -18,9 +18,12 @@ pub(super) struct Around {
 impl Around {
     pub const NOTHING: Self = Self { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
 
-    /// Around the places of items within these bounds.
+    /// Around the places of items within these bounds, but for those that are infinite.
     pub fn places_within(Bounds { min, max }: Bounds) -> Self {
-        Self { low: (2.0 * min).extend(0.0), high: (2.0 * max).extend(0.0) }
+        let twice = |corner: Vec3| {
+            (2.0 * corner).clamp(Vec3::splat(f32::MIN), Vec3::splat(f32::MAX)).extend(0.0)
+        };
+        Self { low: twice(min), high: twice(max) }
     }
 
     /// Where it begins along an axis.

@@ -13,6 +13,8 @@ mod collapse;
 mod divide;
 mod few;
 mod node;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use node::{Child, Node};
 
@@ -77,7 +79,8 @@ impl Cluster {
     }
 }
 
-/// All opaque triangles of a scene, or all transparent ones, in clusters, and the tree over them.
+/// All opaque triangles of a scene, or all transparent ones, in clusters, and the tree over them. Triangles that are not
+/// [finite](crate::geometry::is_finite) block nothing, and are left out.
 #[derive(Clone, Debug, Default)]
 pub struct Clusters {
     clusters: Vec<Cluster>,
