@@ -45,7 +45,7 @@ pub(super) fn read_mesh(path: &Path) -> Result<Draft, SceneError> {
     if extension(path) == "obj" { obj::read(path) } else { gltf::read(path) }
 }
 
-/// The bytes of a file that must not be empty.
+/// The bytes of a file that must not be empty, without a byte order mark.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     let unreadable = |reason| SceneError::Unreadable { path: path.into(), reason };
     if path.is_dir() {
@@ -55,7 +55,16 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     if bytes.is_empty() {
         return Err(malformed(path, "the file is empty"));
     }
-    Ok(bytes)
+    Ok(without_mark(bytes))
+}
+
+/// Takes away the byte order mark that some editors put before UTF-8 text: it is no part of the first
+/// statement.
+pub(super) fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
+    if bytes.starts_with(b"\xef\xbb\xbf") {
+        bytes.drain(..3);
+    }
+    bytes
 }
 
 /// A [`SceneError::Malformed`].

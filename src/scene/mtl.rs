@@ -7,13 +7,14 @@ use std::{fs, path::Path};
 
 use glam::Vec3;
 
-use super::Material;
+use super::{Material, load::without_mark};
 
 /// Reads what an `mtllib` line of the OBJ file `obj` names: one file, whose name may hold spaces, or
 /// several. A missing one is noted.
 pub(super) fn read_libraries(obj: &Path, names: &str, notes: &mut Vec<String>) -> Vec<Material> {
     let folder = obj.parent().unwrap_or(Path::new(""));
-    let open = |name: &str| fs::read(folder.join(name.trim().replace('\\', "/"))).ok();
+    let open =
+        |name: &str| fs::read(folder.join(name.trim().replace('\\', "/"))).ok().map(without_mark);
     if let Some(bytes) = open(names) {
         return parse(&String::from_utf8_lossy(&bytes));
     }

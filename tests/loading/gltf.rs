@@ -7,7 +7,7 @@ use umbra::scene::{Light, Scene};
 use super::{Files, corners, refusal, scene};
 
 /// A corner at the origin and one along each of X and Y, as six f32... and indices 0 1 2 as u16.
-fn triangle_bytes() -> Vec<u8> {
+pub fn triangle_bytes() -> Vec<u8> {
     let positions = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let mut bytes: Vec<u8> = positions.iter().flat_map(|x| x.to_le_bytes()).collect();
     bytes.extend([0u16, 1, 2, 0].iter().flat_map(|i| i.to_le_bytes()));
@@ -40,6 +40,13 @@ fn glb(document: &Value, blob: &[u8]) -> Vec<u8> {
     let word = |n: usize| (n as u32).to_le_bytes();
     let head = [*b"glTF", word(2), word(28 + json.len() + blob.len())].concat();
     [&head, &word(json.len())[..], b"JSON", &json, &word(blob.len()), b"BIN\0", blob].concat()
+}
+
+/// The scene with its buffer in a file of its own.
+pub fn beside(uri: &str) -> Value {
+    let mut document = document();
+    document["buffers"][0]["uri"] = json!(uri);
+    document
 }
 
 pub fn small() -> Vec<u8> {
