@@ -49,6 +49,8 @@
 //! irradiance = [1, 1, 1]
 //! ```
 
+mod soundness;
+
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -141,6 +143,7 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
         let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
         malformed(path, format!("line {line}: {}", error.message().replace('\n', " ")))
     })?;
+    soundness::check(&text, &description).map_err(|problem| malformed(path, problem))?;
     let up = DVec3::from(description.up.unwrap_or([0.0, 1.0, 0.0]));
     let mut draft = empty_draft(path);
     draft.up = Some(up);
