@@ -298,3 +298,22 @@ fn materials_become_whitted_ones() {
     }));
     assert_eq!(lamp.emission, Vec3::new(8.0, 4.0, 0.0));
 }
+
+#[test]
+fn what_was_left_out_is_not_said_to_be_missing() {
+    let scene = loaded(|document| {
+        document["cameras"] =
+            json!([{ "type": "perspective", "perspective": { "yfov": 0, "znear": 0.1 } }]);
+        document["extensions"] = json!({ "KHR_lights_punctual": { "lights": [
+            { "type": "point", "color": [-1, 0, 0] },
+        ] } });
+        document["nodes"][0]["camera"] = json!(0);
+        document["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+    });
+    for thing in ["camera", "light"] {
+        let left_out = |note: &String| note.starts_with("left out") && note.contains(thing);
+        assert!(scene.notes.iter().any(left_out), "{:?}", scene.notes);
+        let added = format!("no usable {thing} in the file: ");
+        assert!(scene.notes.iter().any(|note| note.starts_with(&added)), "{:?}", scene.notes);
+    }
+}
