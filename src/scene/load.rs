@@ -1,7 +1,8 @@
 //! From a name or a path to a scene.
 
 use std::{
-    fs, io,
+    fs,
+    io::{self, Read},
     path::{Path, PathBuf},
 };
 
@@ -56,6 +57,17 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
         return Err(malformed(path, "the file is empty"));
     }
     Ok(without_mark(bytes))
+}
+
+/// At most `most` bytes of a plain file that another file names: a device or a pipe may have no end.
+pub(super) fn read_plain(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let metadata = fs::metadata(path)?;
+    if !metadata.is_file() {
+        return Err(io::Error::other("this is no plain file; name one"));
+    }
+    let mut bytes = Vec::with_capacity(metadata.len().min(most) as usize);
+    fs::File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// Takes away the byte order mark that some editors put before UTF-8 text: it is no part of the first

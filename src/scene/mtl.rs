@@ -3,18 +3,23 @@
 //! tobj refuses a whole MTL file for one bad line and panics on a colour of fewer than three numbers,
 //! so it is given only the lines that we use and that are sound.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use glam::Vec3;
 
-use super::{Material, load::without_mark};
+use super::{
+    Material,
+    load::{read_plain, without_mark},
+};
 
 /// Reads what an `mtllib` line of the OBJ file `obj` names: one file, whose name may hold spaces, or
 /// several. A missing one is noted.
 pub(super) fn read_libraries(obj: &Path, names: &str, notes: &mut Vec<String>) -> Vec<Material> {
     let folder = obj.parent().unwrap_or(Path::new(""));
-    let open =
-        |name: &str| fs::read(folder.join(name.trim().replace('\\', "/"))).ok().map(without_mark);
+    let open = |name: &str| {
+        let file = folder.join(name.trim().replace('\\', "/"));
+        read_plain(&file, u64::MAX).ok().map(without_mark)
+    };
     if let Some(bytes) = open(names) {
         return parse(&String::from_utf8_lossy(&bytes));
     }

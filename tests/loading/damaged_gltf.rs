@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::{
     Files,
-    gltf::{small, with},
+    gltf::{beside, small, triangle_bytes, with},
     refusal,
 };
 
@@ -147,4 +147,29 @@ fn no_damaged_byte_makes_the_loader_panic() {
             let _ = files.write("a.glb", bytes).load("a.glb");
         }
     }
+}
+
+/// A device may have no end.
+#[cfg(unix)]
+#[test]
+fn only_plain_files_are_buffers_and_materials() {
+    let files = Files::new();
+    files.write("a.gltf", beside("/dev/zero").to_string());
+    let message = files.refusal("a.gltf");
+    let told = "a.gltf: cannot read its buffer '/dev/zero': this is no plain file; name one";
+    assert_eq!(message, told);
+    files.write("a.obj", "mtllib /dev/zero\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let scene = files.load("a.obj").expect("a sound file");
+    assert!(scene.notes.iter().any(|note| note.contains("'/dev/zero' cannot be read")));
+}
+
+#[test]
+fn of_a_buffer_beside_the_file_its_length_is_read_and_no_more() {
+    let files = Files::new();
+    let mut bytes = triangle_bytes();
+    bytes.extend([7; 100]);
+    files.write("a.bin", &bytes).write("a.gltf", beside("a.bin").to_string());
+    assert_eq!(files.load("a.gltf").expect("a sound file").triangles.len(), 1);
+    files.write("a.bin", &bytes[..43]);
+    assert_eq!(files.refusal("a.gltf"), "a.gltf: buffer 0 is cut short: 43 bytes of 44");
 }
