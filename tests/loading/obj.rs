@@ -170,3 +170,15 @@ fn each_connected_emissive_surface_gets_one_light_on_the_side_of_the_scene() {
     assert!(position.y < 3.0 && position.y > 2.98 && other.y < 3.0 && other.y > 2.98);
     assert!((position.x - 0.5).abs() < 1e-9 && (position.z - 0.5).abs() < 1e-9);
 }
+
+#[test]
+fn statements_may_go_on_in_the_next_line() {
+    let text = "v 0 0 \\\n 0\nv 1 0\\\r\n0\r\nv 0 1 0\n# a comment is one line \\\nv 1 1 0\nf 1 \\\n2 \\\n 4\\\n 3\n";
+    let scene = scene("a.obj", text);
+    assert_eq!(scene.triangles.get(0), [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0)]);
+    assert_eq!(scene.triangles.len(), 2);
+    let message = refusal("a.obj", format!("{text}f 1 2 x\n"));
+    assert_eq!(message, "a.obj: line 12: 'x' is not a corner of a face");
+    let message = refusal("a.obj", "v 0 0 0\n\nf 1 \\\n 2\\\n x\n");
+    assert_eq!(message, "a.obj: line 3: 'x' is not a corner of a face");
+}
