@@ -153,6 +153,19 @@ fn the_contract_of_a_row() {
     assert!(answers_of_npy(&fs::read(folder.join("none.out")).unwrap(), 0).is_empty());
 }
 
+/// Both ends are finite f32 numbers, and yet there is no ray between them.
+#[test]
+fn a_segment_longer_than_f32_is_said_to_be_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("triangle.obj"), TRIANGLE).unwrap();
+    fs::write(folder.join("rays.csv"), "0,1e38,-3e38,0,1e38,3e38\n").unwrap();
+    let output = run(folder, "query triangle.obj --rays rays.csv -o out.csv");
+    succeeded(&output);
+    let told = "1 rows with NaN or infinity, or in which a number or target - origin is beyond f32";
+    assert!(said(&output).contains(told), "{}", said(&output));
+}
+
 /// No row is lost as a header, and no column read as another.
 #[test]
 fn a_first_row_is_answered_or_refused() {
