@@ -173,3 +173,17 @@ fn of_a_buffer_beside_the_file_its_length_is_read_and_no_more() {
     files.write("a.bin", &bytes[..43]);
     assert_eq!(files.refusal("a.gltf"), "a.gltf: buffer 0 is cut short: 43 bytes of 44");
 }
+
+#[test]
+fn cameras_that_are_of_no_kind_are_refused() {
+    for (camera, words) in [
+        (json!({ "type": "perspective" }), "camera 0 is a perspective one without 'perspective'"),
+        (json!({ "type": "fisheye" }), "camera 0 is of an unknown type"),
+    ] {
+        let message = refused(|document| {
+            document["cameras"] = json!([camera]);
+            document["nodes"][0]["camera"] = json!(0);
+        });
+        assert!(message.starts_with(&format!("a.glb: {words}; give ")), "{message}");
+    }
+}

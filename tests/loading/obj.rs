@@ -67,10 +67,18 @@ fn triangles_without_area_are_dropped_and_counted() {
 
 #[test]
 fn a_file_without_a_sound_triangle_is_refused() {
-    assert_eq!(refusal("a.obj", SQUARE), "a.obj: no triangles");
+    assert_eq!(
+        refusal("a.obj", SQUARE),
+        "a.obj: no triangles; give at least one face that has an area"
+    );
     assert_eq!(
         refusal("a.obj", format!("{SQUARE}f 7 8 9\nf 1 1 1\n")),
-        "a.obj: no triangles left of 2 faces: 1 of zero area, 0 not finite, 1 with an index out of range"
+        "a.obj: no triangles left of 2 faces: 1 of zero area, 0 not finite, 1 with an index out of range; give at least one face that has an area"
+    );
+    // Far from the origin a point has no area either.
+    assert_eq!(
+        refusal("a.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"),
+        "a.obj: no triangles left of 1 faces: 1 of zero area, 0 not finite, 0 with an index out of range; give at least one face that has an area"
     );
 }
 

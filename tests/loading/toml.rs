@@ -88,11 +88,20 @@ fn meshes_that_cannot_be_had_are_named() {
     assert!(mesh("").ends_with("mesh 1: give one of file, builtin, quads and triangles"));
     assert!(mesh("file = \"x.ply\"").contains("is no mesh; name an .obj, .glb or .gltf file"));
     assert!(mesh("triangles = []\nmaterial = \"gold\"").ends_with("there is no [materials.gold]"));
-    assert!(mesh("triangles = []").ends_with("a.toml: no triangles"));
+    assert_eq!(
+        mesh("triangles = []"),
+        "a.toml: line 1: mesh 1: triangles: no triangles; give at least one face that has an area"
+    );
     let files = Files::new();
     files.write("a.toml", "[[mesh]]\nfile = \"lost.obj\"\n");
     let message = files.load("a.toml").expect_err("there is none").to_string();
+    assert!(message.contains("a.toml: line 1: mesh 1: cannot read "), "{message}");
     assert!(message.contains("lost.obj: "), "{message}");
+    files.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    files.write("a.toml", format!("{TRIANGLE}\n[[mesh]]\nfile = \"points.obj\"\n"));
+    let message = files.refusal("a.toml");
+    assert!(message.starts_with("a.toml: line 4: mesh 2: "), "{message}");
+    assert!(message.contains("points.obj: no triangles; give at least"), "{message}");
 }
 
 #[test]
@@ -109,6 +118,7 @@ fn built_in_scenes_can_be_placed() {
     files.write("b.toml", "[[mesh]]\nbuiltin = \"teapot\"\n");
     let message = files.load("b.toml").expect_err("there is none").to_string();
     assert!(message.contains("'teapot'; built-in scenes: jittered-sparse"), "{message}");
+    assert!(message.contains("b.toml: line 1: mesh 1: "), "{message}");
 }
 
 #[test]

@@ -82,7 +82,7 @@ impl Reader<'_> {
                 self.read_mesh(&root, item(&root.meshes, mesh.value(), "mesh")?, world)?;
             }
             if let Some(index) = node.camera {
-                self.read_camera(item(&root.cameras, index.value(), "camera")?, world)?;
+                self.read_camera(&root, index.value(), world)?;
             }
             if let Some(lights) =
                 node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref())
@@ -167,9 +167,13 @@ impl Reader<'_> {
     }
 
     /// Takes the first perspective camera.
-    fn read_camera(&mut self, camera: &camera::Camera, world: DAffine3) -> Result<(), Problem> {
-        match &camera.perspective {
-            Some(perspective) if self.draft.camera.is_none() => {
+    fn read_camera(&mut self, root: &Root, index: usize, world: DAffine3) -> Result<(), Problem> {
+        use camera::Type;
+        let camera = item(&root.cameras, index, "camera")?;
+        match (camera.type_, &camera.perspective) {
+            (Checked::Valid(Type::Perspective), Some(perspective))
+                if self.draft.camera.is_none() =>
+            {
                 let axes = world.matrix3;
                 self.draft.camera = Some(Camera::facing(
                     world.translation,
@@ -178,8 +182,20 @@ impl Reader<'_> {
                     f64::from(perspective.yfov),
                 ));
             }
-            Some(_) => {}
-            None => self.note("an orthographic camera is left out"),
+            (Checked::Valid(Type::Perspective), Some(_)) => {}
+            (Checked::Valid(Type::Perspective), None) => {
+                return Err(format!(
+                    "camera {index} is a perspective one without 'perspective'; give it 'yfov' and 'znear' there"
+                ));
+            }
+            (Checked::Valid(Type::Orthographic), _) => {
+                self.note("an orthographic camera is left out");
+            }
+            (Checked::Invalid, _) => {
+                return Err(format!(
+                    "camera {index} is of an unknown type; give 'perspective' or 'orthographic'"
+                ));
+            }
         }
         Ok(())
     }
