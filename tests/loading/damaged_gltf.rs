@@ -187,3 +187,31 @@ fn cameras_that_are_of_no_kind_are_refused() {
         assert!(message.starts_with(&format!("a.glb: {words}; give ")), "{message}");
     }
 }
+
+#[test]
+fn another_version_of_gltf_is_refused() {
+    for version in ["1.0", "3.0", "20", ""] {
+        let message = refused(|document| document["asset"]["version"] = json!(version));
+        let told = format!("a.glb: the file is of glTF version '{version}'; umbra reads version 2");
+        assert!(message.starts_with(&told), "{message}");
+    }
+}
+
+#[test]
+fn elements_that_overlap_are_refused() {
+    let message = refused(|document| document["bufferViews"][0]["byteStride"] = json!(4));
+    let told = "a.glb: accessor 0 (positions) has a byteStride of 4, less than its elements of 12";
+    assert!(message.starts_with(told), "{message}");
+}
+
+#[test]
+fn a_cone_that_is_wider_within_than_without_is_refused() {
+    let message = refused(|document| {
+        document["extensions"] = json!({ "KHR_lights_punctual": { "lights": [
+            { "type": "spot", "spot": { "innerConeAngle": 0.5, "outerConeAngle": 0.25 } },
+        ] } });
+        document["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+    });
+    let told = "a.glb: light 0 has an innerConeAngle of 0.5, more than its outerConeAngle of 0.25";
+    assert!(message.starts_with(told), "{message}");
+}

@@ -317,3 +317,11 @@ fn what_was_left_out_is_not_said_to_be_missing() {
         assert!(scene.notes.iter().any(|note| note.starts_with(&added)), "{:?}", scene.notes);
     }
 }
+
+#[test]
+fn corners_beyond_the_last_whole_triangle_are_noted() {
+    let scene = loaded(|document| document["accessors"][1]["count"] = json!(4));
+    let told = "a primitive has 4 corners, not three for each triangle: the last 1 are left out";
+    assert_eq!(scene.triangles.len(), 1);
+    assert!(scene.notes.iter().any(|note| note == told), "{:?}", scene.notes);
+}

@@ -190,3 +190,29 @@ fn statements_may_go_on_in_the_next_line() {
     let message = refusal("a.obj", "v 0 0 0\n\nf 1 \\\n 2\\\n x\n");
     assert_eq!(message, "a.obj: line 3: 'x' is not a corner of a face");
 }
+
+#[test]
+fn lines_of_an_mtl_that_cannot_be_read_are_noted_once_with_their_line() {
+    let noted = |mtl: &str| {
+        let files = Files::new();
+        files.write("a.mtl", mtl);
+        files.write("a.obj", format!("mtllib a.mtl\n{SQUARE}usemtl red\nf 1 2 3\n"));
+        let mut notes = files.load("a.obj").expect("a sound file").notes;
+        notes.retain(|note| note.contains("a.mtl"));
+        notes
+    };
+    for line in ["Kd a b c", "Kd nan inf -1", "Kd 1 nan 0", "Ks 1 0", "Ke", "d nan", "Ns x"] {
+        let notes = noted(&format!("newmtl red\n{line}\n"));
+        assert_eq!(notes.len(), 1, "{line}: {notes:?}");
+        let told = format!("material file 'a.mtl', line 2: '{line}' should be ");
+        assert!(notes[0].starts_with(&told), "{notes:?}");
+    }
+    let notes = noted("newmtl red\n\nKd a b c\nd nan\nNs x\n");
+    assert_eq!(
+        notes,
+        [
+            "material file 'a.mtl', line 3: 'Kd a b c' should be 'Kd' and three numbers; it is left out, and so are 2 other lines"
+        ]
+    );
+    assert!(noted("newmtl red\nKd 1 0 0 # red\nd 1\nKs 0.5\nmap_Kd x\n").is_empty());
+}

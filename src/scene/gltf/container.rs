@@ -31,6 +31,12 @@ impl<'a> Container<'a> {
         let (json, blob) =
             if must_be_binary || bytes.starts_with(MAGIC) { split(bytes)? } else { (bytes, None) };
         let root = Root::from_slice(json).map_err(|e| format!("not glTF JSON: {e}"))?;
+        let version = &root.asset.version;
+        if version.split('.').next() != Some("2") {
+            return Err(format!(
+                "the file is of glTF version '{version}'; umbra reads version 2: convert it"
+            ));
+        }
         let buffers = root
             .buffers
             .iter()
@@ -79,7 +85,12 @@ impl<'a> Container<'a> {
         let buffer = &self.buffers[view.buffer.value()];
 
         let size = kind.size() * dimensions.multiplicity();
-        let stride = view.byte_stride.as_ref().map_or(size, |stride| stride.0.max(size));
+        let stride = view.byte_stride.as_ref().map_or(size, |stride| stride.0);
+        if stride < size {
+            return wrong(&format!(
+                "has a byteStride of {stride}, less than its elements of {size} bytes; export the file again"
+            ));
+        }
         let start = view.byte_offset.map_or(0, |offset| offset.0);
         let bytes = slice(buffer, start, view.byte_length.0).and_then(|view| {
             view.get(usize::try_from(accessor.byte_offset.map_or(0, |o| o.0)).ok()?..)

@@ -146,6 +146,16 @@ impl Reader<'_> {
             None => root.materials.len(),
         };
         let count = indices.as_ref().map_or(positions.count, |indices| indices.count);
+        if mode(primitive)? == Mode::Triangles && !count.is_multiple_of(3) {
+            let note = format!(
+                "a primitive has {count} corners, not three for each triangle: the last {} are left out",
+                count % 3
+            );
+            // A mesh may be placed many times.
+            if !self.draft.notes.contains(&note) {
+                self.draft.notes.push(note);
+            }
+        }
         let vertex = |i| indices.as_ref().map_or(i, |indices| indices.index(i));
         for corners in corners_of(mode(primitive)?, count) {
             let corners = corners.map(vertex);
@@ -213,6 +223,14 @@ impl Reader<'_> {
                 Light::Directional { direction: backwards, irradiance: intensity }
             }
             (Checked::Valid(Type::Point), _) => Light::Point { position, intensity },
+            (Checked::Valid(Type::Spot), Some(cone))
+                if cone.inner_cone_angle > cone.outer_cone_angle =>
+            {
+                return Err(format!(
+                    "light {index} has an innerConeAngle of {}, more than its outerConeAngle of {}; give less",
+                    cone.inner_cone_angle, cone.outer_cone_angle
+                ));
+            }
             (Checked::Valid(Type::Spot), Some(cone)) => Light::Spot {
                 position,
                 axis: -backwards,
