@@ -191,7 +191,7 @@ fn rays_that_are_no_rays() {
         ("five.csv", format!("{ROW}{ROW}1,2,3,4,5\n").into(), &["line 3", "'1,2,3,4,5'"]),
         ("seven.csv", format!("{ROW}1,2,3,4,5,6,7\n{ROW}").into(), &["line 2", "six numbers"]),
         ("word.csv", format!("\n#\n{ROW}1,2,three,4,5,6").into(), &["line 4", "three"]),
-        ("named.csv", format!("a,b,c,d,e,f\n{ROW}a,b,c,d,e,f\n").into(), &["line 3"]),
+        ("named.csv", format!("ox,oy,oz,tx,ty,tz\n{ROW}a,b,c,d,e,f\n").into(), &["line 3"]),
         ("blanks.csv", b"1 2 3 4 5 6\n".into(), &["line 1", "commas"]),
         ("bytes.csv", [ROW.as_bytes(), &[255; 70]].concat(), &["line 2", "not text"]),
         (

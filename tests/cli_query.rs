@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Output;
 
 use common::Random;
-use common::command::{TRIANGLE, npy, run, said, umbra};
+use common::command::{TRIANGLE, assert_refusal, npy, run, said, umbra};
 use glam::Vec3;
 use umbra::geometry::Ray;
 use umbra::occlusion::{Backend, BuildOptions, Tally, build};
@@ -151,6 +151,37 @@ fn the_contract_of_a_row() {
     fs::write(folder.join("none.npy"), npy("'<f4'", "False", "(0, 6)", &[])).unwrap();
     succeeded(&run(folder, "query scene.toml --rays none.npy -o none.out"));
     assert!(answers_of_npy(&fs::read(folder.join("none.out")).unwrap(), 0).is_empty());
+}
+
+/// Both ends are finite f32 numbers, and yet there is no ray between them.
+#[test]
+fn a_segment_longer_than_f32_is_said_to_be_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("triangle.obj"), TRIANGLE).unwrap();
+    fs::write(folder.join("rays.csv"), "0,1e38,-3e38,0,1e38,3e38\n").unwrap();
+    let output = run(folder, "query triangle.obj --rays rays.csv -o out.csv");
+    succeeded(&output);
+    let told = "1 rows with NaN or infinity, or in which a number or target - origin is beyond f32";
+    assert!(said(&output).contains(told), "{}", said(&output));
+}
+
+/// No row is lost as a header, and no column read as another.
+#[test]
+fn a_first_row_is_answered_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("triangle.obj"), TRIANGLE).unwrap();
+    let line = "query triangle.obj --rays rays.csv -o out.csv";
+    fs::write(folder.join("rays.csv"), "\"1\",\"1\",\"1\",\"1\",\"1\",\"-1\"\n1,1,1,1,1,2\n")
+        .unwrap();
+    succeeded(&run(folder, line));
+    assert_eq!(fs::read_to_string(folder.join("out.csv")).unwrap(), "1\n0\n");
+    for first in ["1e,--2,1f,2_0,$3,x", "tx,ty,tz,ox,oy,oz"] {
+        fs::write(folder.join("rays.csv"), format!("{first}\n1,1,1,1,1,2\n")).unwrap();
+        let told = ["rays.csv: line 1: ", first, "give ox,oy,oz,tx,ty,tz in this order"];
+        assert_refusal(&run(folder, line), &told);
+    }
 }
 
 #[test]

@@ -354,7 +354,7 @@ fn the_command_says_what_it_compared_and_what_it_decided() {
     let folder = workplace();
     let output = run(folder.path(), "compare roof.obj --size 40x30");
     assert!(output.status.success(), "{}", said(&output));
-    assert!(said(&output).contains("no light in the file: added"), "{}", said(&output));
+    assert!(said(&output).contains("no usable light in the file: added"), "{}", said(&output));
     let table = String::from_utf8(output.stdout).unwrap();
     for part in
         ["2 triangles", "grid exact", "cwbvh watertight", "unexplained", "contradicted 0 times"]

@@ -204,7 +204,8 @@ impl Draft {
             return DVec3::ZERO;
         }
         let (centre, diagonal) = (0.5 * (min + max), (max - min).length());
-        if centre.length() <= FAR_FROM_ORIGIN * diagonal {
+        // A lone point has no diagonal to round to.
+        if diagonal == 0.0 || centre.length() <= FAR_FROM_ORIGIN * diagonal {
             return DVec3::ZERO;
         }
         let unit = diagonal.log2().floor().exp2();

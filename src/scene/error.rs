@@ -38,7 +38,7 @@ pub enum SceneError {
         known: String,
     },
     /// Nothing is left to render.
-    #[error("{name}: no triangles{dropped}")]
+    #[error("{name}: no triangles{dropped}; give at least one face that has an area")]
     Empty {
         /// The scene.
         name: String,

@@ -1,7 +1,8 @@
 //! From a name or a path to a scene.
 
 use std::{
-    fs, io,
+    fs,
+    io::{self, Read},
     path::{Path, PathBuf},
 };
 
@@ -45,7 +46,7 @@ pub(super) fn read_mesh(path: &Path) -> Result<Draft, SceneError> {
     if extension(path) == "obj" { obj::read(path) } else { gltf::read(path) }
 }
 
-/// The bytes of a file that must not be empty.
+/// The bytes of a file that must not be empty, without a byte order mark.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     let unreadable = |reason| SceneError::Unreadable { path: path.into(), reason };
     if path.is_dir() {
@@ -55,7 +56,27 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     if bytes.is_empty() {
         return Err(malformed(path, "the file is empty"));
     }
+    Ok(without_mark(bytes))
+}
+
+/// At most `most` bytes of a plain file that another file names: a device or a pipe may have no end.
+pub(super) fn read_plain(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let metadata = fs::metadata(path)?;
+    if !metadata.is_file() {
+        return Err(io::Error::other("this is no plain file; name one"));
+    }
+    let mut bytes = Vec::with_capacity(metadata.len().min(most) as usize);
+    fs::File::open(path)?.take(most).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// Takes away the byte order mark that some editors put before UTF-8 text: it is no part of the first
+/// statement.
+pub(super) fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
+    if bytes.starts_with(b"\xef\xbb\xbf") {
+        bytes.drain(..3);
+    }
+    bytes
 }
 
 /// A [`SceneError::Malformed`].

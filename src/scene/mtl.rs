@@ -3,24 +3,32 @@
 //! tobj refuses a whole MTL file for one bad line and panics on a colour of fewer than three numbers,
 //! so it is given only the lines that we use and that are sound.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use glam::Vec3;
 
-use super::Material;
+use super::{
+    Material,
+    load::{read_plain, without_mark},
+};
 
 /// Reads what an `mtllib` line of the OBJ file `obj` names: one file, whose name may hold spaces, or
 /// several. A missing one is noted.
 pub(super) fn read_libraries(obj: &Path, names: &str, notes: &mut Vec<String>) -> Vec<Material> {
     let folder = obj.parent().unwrap_or(Path::new(""));
-    let open = |name: &str| fs::read(folder.join(name.trim().replace('\\', "/"))).ok();
+    let open = |name: &str| {
+        let file = folder.join(name.trim().replace('\\', "/"));
+        read_plain(&file, u64::MAX).ok().map(without_mark)
+    };
     if let Some(bytes) = open(names) {
-        return parse(&String::from_utf8_lossy(&bytes));
+        return parse(names.trim(), &String::from_utf8_lossy(&bytes), notes);
     }
     let mut materials = Vec::new();
     for name in names.split_whitespace() {
         match open(name) {
-            Some(bytes) => materials.extend(parse(&String::from_utf8_lossy(&bytes))),
+            Some(bytes) => {
+                materials.extend(parse(name, &String::from_utf8_lossy(&bytes), notes));
+            }
             None => {
                 notes.push(format!("material file '{name}' cannot be read: plain grey instead"))
             }
@@ -29,32 +37,51 @@ pub(super) fn read_libraries(obj: &Path, names: &str, notes: &mut Vec<String>) -
     materials
 }
 
-fn parse(text: &str) -> Vec<Material> {
-    let sound: String = text.lines().filter_map(sound_line).collect();
+/// The materials of a text. Lines that we use but cannot read are noted, all in one note.
+fn parse(name: &str, text: &str, notes: &mut Vec<String>) -> Vec<Material> {
+    let (mut sound, mut unread) = (String::new(), Vec::new());
+    for (number, line) in (1..).zip(text.lines()) {
+        match sound_line(line) {
+            Ok(line) => sound.push_str(&line),
+            Err(problem) => unread.push(format!("line {number}: {problem}")),
+        }
+    }
+    if let [first, others @ ..] = &unread[..] {
+        let more = match others.len() {
+            0 => String::new(),
+            count => format!(", and so are {count} other lines"),
+        };
+        notes.push(format!("material file '{name}', {first}; it is left out{more}"));
+    }
     // Nothing is left in the text that tobj could refuse; if it does, all is plain grey.
     let (materials, _) = tobj::load_mtl_buf(&mut sound.as_bytes()).unwrap_or_default();
     materials.iter().map(material).collect()
 }
 
-/// The line as tobj is to see it, if it is one of those we use.
-fn sound_line(line: &str) -> Option<String> {
+/// The line as tobj is to see it: empty unless it is one of those we use. Else what is wrong with it.
+fn sound_line(line: &str) -> Result<String, String> {
     let line = line.trim();
-    let (keyword, rest) = line.split_once(char::is_whitespace)?;
-    let mut numbers = rest
-        .split_whitespace()
-        .map_while(|word| word.parse::<f64>().ok().filter(|x| x.is_finite()));
-    match keyword {
-        "newmtl" => Some(format!("newmtl {}\n", rest.trim())),
-        "Kd" | "Ks" | "Ke" => {
-            let red = numbers.next()?;
+    let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let numbers = |wanted: &str| {
+        let words = rest.split_whitespace().take_while(|word| !word.starts_with('#'));
+        let numbers: Option<Vec<f64>> =
+            words.map(|word| word.parse().ok().filter(|x: &f64| x.is_finite())).collect();
+        let numbers = numbers.filter(|numbers| !numbers.is_empty());
+        numbers.ok_or_else(|| format!("'{line}' should be '{keyword}' and {wanted}"))
+    };
+    Ok(match keyword {
+        "newmtl" if rest.trim().is_empty() => return Err("'newmtl' has no name".to_owned()),
+        "newmtl" => format!("newmtl {}\n", rest.trim()),
+        "Kd" | "Ks" | "Ke" => match numbers("three numbers")?[..] {
+            [red, green, blue, ..] => format!("{keyword} {red} {green} {blue}\n"),
             // One number stands for all three channels.
-            let (green, blue) = (numbers.next().unwrap_or(red), numbers.next().unwrap_or(red));
-            Some(format!("{keyword} {red} {green} {blue}\n"))
-        }
-        "Ns" | "Ni" | "d" | "Tr" => Some(format!("{keyword} {}\n", numbers.next()?)),
-        "illum" => Some(format!("illum {}\n", numbers.next()? as u8)),
-        _ => None,
-    }
+            [grey] => format!("{keyword} {grey} {grey} {grey}\n"),
+            _ => return Err(format!("'{line}' should be '{keyword}' and three numbers")),
+        },
+        "Ns" | "Ni" | "d" | "Tr" => format!("{keyword} {}\n", numbers("a number")?[0]),
+        "illum" => format!("illum {}\n", numbers("a number")?[0] as u8),
+        _ => String::new(),
+    })
 }
 
 /// Illumination models that reflect: 3 mirror, 4 glass, 5 Fresnel, 6 and 7 refraction, 8 and 9 as 3

@@ -6,7 +6,7 @@
 //! Two passes over the text: the first takes the vertices, the second the faces, which may name
 //! vertices that come later. Lines, points, curves, groups and texture coordinates are skipped.
 
-use std::{collections::HashMap, path::Path};
+use std::{borrow::Cow, collections::HashMap, path::Path};
 
 use glam::{DVec3, Vec3};
 
@@ -31,6 +31,7 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
         ));
     }
     let text = String::from_utf8_lossy(&bytes);
+    let text = join_continued(&text);
     let mut materials = Materials::default();
     let mut draft = empty_draft(path);
     draft.choose_surroundings = true;
@@ -74,6 +75,31 @@ impl Materials {
             self.add(Material { name: name.to_owned(), ..Material::default() })
         })
     }
+}
+
+/// Joins each line that ends in `\` with the next one. Blank lines follow, as many as went, so that those
+/// below keep their numbers. A comment goes no further than its line.
+fn join_continued(text: &str) -> Cow<'_, str> {
+    if !text.contains("\\\n") && !text.contains("\\\r\n") {
+        return Cow::Borrowed(text);
+    }
+    let mut joined = String::with_capacity(text.len());
+    let mut gone = 0;
+    for line in text.lines() {
+        let is_comment = gone == 0 && line.trim_start().starts_with('#');
+        match line.strip_suffix('\\') {
+            Some(part) if !is_comment => {
+                joined.extend([part, " "]);
+                gone += 1;
+            }
+            _ => {
+                joined.push_str(line);
+                joined.extend(std::iter::repeat_n('\n', gone + 1));
+                gone = 0;
+            }
+        }
+    }
+    Cow::Owned(joined)
 }
 
 /// Keyword and rest of each line that is not a comment, with its number from 1.

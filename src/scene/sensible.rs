@@ -35,7 +35,7 @@ pub(super) fn add_camera(scene: &mut Scene, up: Option<DVec3>) {
     };
     scene.camera = fitted(scene, from, up);
     let axis = if up == DVec3::Z { ", with Z up," } else { "" };
-    scene.notes.push(format!("no camera in the file: one{axis} that {what} was added"));
+    scene.notes.push(format!("no usable camera in the file: one{axis} that {what} was added"));
 }
 
 /// Whether the extent along an axis is much smaller than both others.
@@ -140,7 +140,7 @@ pub(super) fn add_lights(scene: &mut Scene) {
         });
     }
     scene.lights.extend(found.lights);
-    scene.notes.push(format!("no light in the file: added {}", added.join(" and ")));
+    scene.notes.push(format!("no usable light in the file: added {}", added.join(" and ")));
 }
 
 /// A little ambient light, so that shadows are not black, and a sky where a sun shines.

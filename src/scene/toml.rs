@@ -49,6 +49,8 @@
 //! irradiance = [1, 1, 1]
 //! ```
 
+mod soundness;
+
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -56,6 +58,7 @@ use std::{
 
 use glam::{DAffine3, DQuat, DVec3, EulerRot, Vec3};
 use serde::Deserialize;
+use soundness::Step;
 
 use super::{
     Camera, Draft, DraftTriangle, Light, Material, SceneError, builtin,
@@ -141,6 +144,7 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
         let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
         malformed(path, format!("line {line}: {}", error.message().replace('\n', " ")))
     })?;
+    soundness::check(&text, &description).map_err(|problem| malformed(path, problem))?;
     let up = DVec3::from(description.up.unwrap_or([0.0, 1.0, 0.0]));
     let mut draft = empty_draft(path);
     draft.up = Some(up);
@@ -157,7 +161,10 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
         draft.materials.push(Material { name, ..material });
     }
     for (index, entry) in description.mesh.iter().enumerate() {
-        add_mesh(path, &mut draft, index + 1, entry)?;
+        add_mesh(path, &mut draft, entry).map_err(|problem| {
+            let line = soundness::line(&text, &[Step::Key("mesh"), Step::Element(index)]);
+            malformed(path, format!("line {line}: mesh {}: {problem}", index + 1))
+        })?;
     }
     Ok(draft)
 }
@@ -181,18 +188,13 @@ fn light(entry: &LightEntry) -> Light {
     }
 }
 
-fn add_mesh(
-    path: &Path,
-    draft: &mut Draft,
-    number: usize,
-    entry: &MeshEntry,
-) -> Result<(), SceneError> {
-    let problem = |text: String| malformed(path, format!("mesh {number}: {text}"));
+/// Adds a mesh, or says what is wrong with it.
+fn add_mesh(path: &Path, draft: &mut Draft, entry: &MeshEntry) -> Result<(), String> {
     let own = match &entry.material {
         None => None,
         Some(name) => {
             let place = draft.materials.iter().position(|material| material.name == *name);
-            Some(place.ok_or_else(|| problem(format!("there is no [materials.{name}]")))? as u32)
+            Some(place.ok_or_else(|| format!("there is no [materials.{name}]"))? as u32)
         }
     };
     let mesh = match (&entry.file, &entry.builtin, &entry.quads, &entry.triangles) {
@@ -200,17 +202,23 @@ fn add_mesh(
             let file = path.parent().unwrap_or(Path::new("")).join(file);
             if !is_mesh(&file) {
                 let text = "is no mesh; name an .obj, .glb or .gltf file";
-                return Err(problem(format!("'{}' {text}", file.display())));
+                return Err(format!("'{}' {text}", file.display()));
             }
-            read_mesh(&file)?
+            read_mesh(&file).map_err(|error| error.to_string())?
         }
-        (None, Some(name), None, None) => builtin::draft_at(name, 1.0)?,
+        (None, Some(name), None, None) => {
+            builtin::draft_at(name, 1.0).map_err(|error| error.to_string())?
+        }
         (None, None, Some(quads), None) => {
-            inline(quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]))
+            inline("quads", quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]))
         }
-        (None, None, None, Some(triangles)) => inline(triangles.iter().copied()),
-        _ => return Err(problem("give one of file, builtin, quads and triangles".to_owned())),
+        (None, None, None, Some(triangles)) => inline("triangles", triangles.iter().copied()),
+        _ => return Err("give one of file, builtin, quads and triangles".to_owned()),
     };
+    if mesh.triangles.is_empty() {
+        // By itself it is no scene either: the same words say why.
+        return mesh.finish().map(drop).map_err(|error| error.to_string());
+    }
     if !mesh.lights.is_empty() || mesh.camera.is_some() {
         draft.notes.push(format!("{}: its lights and camera are left out", mesh.name));
     }
@@ -236,7 +244,7 @@ fn add_mesh(
 }
 
 /// A mesh that is written in the description itself.
-fn inline(triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Draft {
+fn inline(name: &str, triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Draft {
     let triangles = triangles
         .map(|corners| DraftTriangle {
             corners: corners.map(DVec3::from),
@@ -244,5 +252,6 @@ fn inline(triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Draft {
             material: 0,
         })
         .collect();
-    Draft { triangles, materials: vec![Material::default()], ..Draft::default() }
+    let name = name.to_owned();
+    Draft { name, triangles, materials: vec![Material::default()], ..Draft::default() }
 }

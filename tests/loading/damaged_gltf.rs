@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::{
     Files,
-    gltf::{small, with},
+    gltf::{beside, small, triangle_bytes, with},
     refusal,
 };
 
@@ -147,4 +147,71 @@ fn no_damaged_byte_makes_the_loader_panic() {
             let _ = files.write("a.glb", bytes).load("a.glb");
         }
     }
+}
+
+/// A device may have no end.
+#[cfg(unix)]
+#[test]
+fn only_plain_files_are_buffers_and_materials() {
+    let files = Files::new();
+    files.write("a.gltf", beside("/dev/zero").to_string());
+    let message = files.refusal("a.gltf");
+    let told = "a.gltf: cannot read its buffer '/dev/zero': this is no plain file; name one";
+    assert_eq!(message, told);
+    files.write("a.obj", "mtllib /dev/zero\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let scene = files.load("a.obj").expect("a sound file");
+    assert!(scene.notes.iter().any(|note| note.contains("'/dev/zero' cannot be read")));
+}
+
+#[test]
+fn of_a_buffer_beside_the_file_its_length_is_read_and_no_more() {
+    let files = Files::new();
+    let mut bytes = triangle_bytes();
+    bytes.extend([7; 100]);
+    files.write("a.bin", &bytes).write("a.gltf", beside("a.bin").to_string());
+    assert_eq!(files.load("a.gltf").expect("a sound file").triangles.len(), 1);
+    files.write("a.bin", &bytes[..43]);
+    assert_eq!(files.refusal("a.gltf"), "a.gltf: buffer 0 is cut short: 43 bytes of 44");
+}
+
+#[test]
+fn cameras_that_are_of_no_kind_are_refused() {
+    for (camera, words) in [
+        (json!({ "type": "perspective" }), "camera 0 is a perspective one without 'perspective'"),
+        (json!({ "type": "fisheye" }), "camera 0 is of an unknown type"),
+    ] {
+        let message = refused(|document| {
+            document["cameras"] = json!([camera]);
+            document["nodes"][0]["camera"] = json!(0);
+        });
+        assert!(message.starts_with(&format!("a.glb: {words}; give ")), "{message}");
+    }
+}
+
+#[test]
+fn another_version_of_gltf_is_refused() {
+    for version in ["1.0", "3.0", "20", ""] {
+        let message = refused(|document| document["asset"]["version"] = json!(version));
+        let told = format!("a.glb: the file is of glTF version '{version}'; umbra reads version 2");
+        assert!(message.starts_with(&told), "{message}");
+    }
+}
+
+#[test]
+fn elements_that_overlap_are_refused() {
+    let message = refused(|document| document["bufferViews"][0]["byteStride"] = json!(4));
+    let told = "a.glb: accessor 0 (positions) has a byteStride of 4, less than its elements of 12";
+    assert!(message.starts_with(told), "{message}");
+}
+
+#[test]
+fn a_cone_that_is_wider_within_than_without_is_refused() {
+    let message = refused(|document| {
+        document["extensions"] = json!({ "KHR_lights_punctual": { "lights": [
+            { "type": "spot", "spot": { "innerConeAngle": 0.5, "outerConeAngle": 0.25 } },
+        ] } });
+        document["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+    });
+    let told = "a.glb: light 0 has an innerConeAngle of 0.5, more than its outerConeAngle of 0.25";
+    assert!(message.starts_with(told), "{message}");
 }

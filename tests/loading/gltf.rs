@@ -7,7 +7,7 @@ use umbra::scene::{Light, Scene};
 use super::{Files, corners, refusal, scene};
 
 /// A corner at the origin and one along each of X and Y, as six f32... and indices 0 1 2 as u16.
-fn triangle_bytes() -> Vec<u8> {
+pub fn triangle_bytes() -> Vec<u8> {
     let positions = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let mut bytes: Vec<u8> = positions.iter().flat_map(|x| x.to_le_bytes()).collect();
     bytes.extend([0u16, 1, 2, 0].iter().flat_map(|i| i.to_le_bytes()));
@@ -40,6 +40,13 @@ fn glb(document: &Value, blob: &[u8]) -> Vec<u8> {
     let word = |n: usize| (n as u32).to_le_bytes();
     let head = [*b"glTF", word(2), word(28 + json.len() + blob.len())].concat();
     [&head, &word(json.len())[..], b"JSON", &json, &word(blob.len()), b"BIN\0", blob].concat()
+}
+
+/// The scene with its buffer in a file of its own.
+pub fn beside(uri: &str) -> Value {
+    let mut document = document();
+    document["buffers"][0]["uri"] = json!(uri);
+    document
 }
 
 pub fn small() -> Vec<u8> {
@@ -290,4 +297,31 @@ fn materials_become_whitted_ones() {
         "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 8 } },
     }));
     assert_eq!(lamp.emission, Vec3::new(8.0, 4.0, 0.0));
+}
+
+#[test]
+fn what_was_left_out_is_not_said_to_be_missing() {
+    let scene = loaded(|document| {
+        document["cameras"] =
+            json!([{ "type": "perspective", "perspective": { "yfov": 0, "znear": 0.1 } }]);
+        document["extensions"] = json!({ "KHR_lights_punctual": { "lights": [
+            { "type": "point", "color": [-1, 0, 0] },
+        ] } });
+        document["nodes"][0]["camera"] = json!(0);
+        document["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+    });
+    for thing in ["camera", "light"] {
+        let left_out = |note: &String| note.starts_with("left out") && note.contains(thing);
+        assert!(scene.notes.iter().any(left_out), "{:?}", scene.notes);
+        let added = format!("no usable {thing} in the file: ");
+        assert!(scene.notes.iter().any(|note| note.starts_with(&added)), "{:?}", scene.notes);
+    }
+}
+
+#[test]
+fn corners_beyond_the_last_whole_triangle_are_noted() {
+    let scene = loaded(|document| document["accessors"][1]["count"] = json!(4));
+    let told = "a primitive has 4 corners, not three for each triangle: the last 1 are left out";
+    assert_eq!(scene.triangles.len(), 1);
+    assert!(scene.notes.iter().any(|note| note == told), "{:?}", scene.notes);
 }

@@ -7,7 +7,7 @@ mod toml;
 
 use std::{fs, path::PathBuf};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use tempfile::TempDir;
 use umbra::scene::{Draft, Scene, SceneError, draft, load};
 
@@ -108,4 +108,25 @@ fn an_unknown_name_is_answered_with_the_built_in_ones() {
 #[test]
 fn extensions_count_in_any_case() {
     assert_eq!(scene("A.OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").triangles.len(), 1);
+}
+
+/// What some editors write before UTF-8 text.
+const BYTE_ORDER_MARK: &str = "\u{feff}";
+
+#[test]
+fn a_byte_order_mark_changes_nothing() {
+    let files = Files::new();
+    files.write("a.mtl", format!("{BYTE_ORDER_MARK}newmtl red\nKd 1 0 0\n"));
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nmtllib a.mtl\nusemtl red\nf 1 2 3\n";
+    files.write("a.obj", format!("{BYTE_ORDER_MARK}{text}"));
+    let scene = files.load("a.obj").expect("a sound file");
+    assert_eq!(scene.triangles.get(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(scene.material(0).diffuse, Vec3::X);
+    let (document, mesh) = (gltf::beside("a.bin"), "[[mesh]]\nfile = \"a.gltf\"\n");
+    files.write("a.bin", gltf::triangle_bytes());
+    files.write("a.gltf", format!("{BYTE_ORDER_MARK}{document}"));
+    files.write("a.toml", format!("{BYTE_ORDER_MARK}{mesh}"));
+    for name in ["a.gltf", "a.toml"] {
+        assert_eq!(files.load(name).expect("a sound file").triangles.len(), 1);
+    }
 }

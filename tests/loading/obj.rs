@@ -67,10 +67,18 @@ fn triangles_without_area_are_dropped_and_counted() {
 
 #[test]
 fn a_file_without_a_sound_triangle_is_refused() {
-    assert_eq!(refusal("a.obj", SQUARE), "a.obj: no triangles");
+    assert_eq!(
+        refusal("a.obj", SQUARE),
+        "a.obj: no triangles; give at least one face that has an area"
+    );
     assert_eq!(
         refusal("a.obj", format!("{SQUARE}f 7 8 9\nf 1 1 1\n")),
-        "a.obj: no triangles left of 2 faces: 1 of zero area, 0 not finite, 1 with an index out of range"
+        "a.obj: no triangles left of 2 faces: 1 of zero area, 0 not finite, 1 with an index out of range; give at least one face that has an area"
+    );
+    // Far from the origin a point has no area either.
+    assert_eq!(
+        refusal("a.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"),
+        "a.obj: no triangles left of 1 faces: 1 of zero area, 0 not finite, 0 with an index out of range; give at least one face that has an area"
     );
 }
 
@@ -169,4 +177,42 @@ fn each_connected_emissive_surface_gets_one_light_on_the_side_of_the_scene() {
     assert_eq!(intensity, Vec3::splat(2.0));
     assert!(position.y < 3.0 && position.y > 2.98 && other.y < 3.0 && other.y > 2.98);
     assert!((position.x - 0.5).abs() < 1e-9 && (position.z - 0.5).abs() < 1e-9);
+}
+
+#[test]
+fn statements_may_go_on_in_the_next_line() {
+    let text = "v 0 0 \\\n 0\nv 1 0\\\r\n0\r\nv 0 1 0\n# a comment is one line \\\nv 1 1 0\nf 1 \\\n2 \\\n 4\\\n 3\n";
+    let scene = scene("a.obj", text);
+    assert_eq!(scene.triangles.get(0), [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0)]);
+    assert_eq!(scene.triangles.len(), 2);
+    let message = refusal("a.obj", format!("{text}f 1 2 x\n"));
+    assert_eq!(message, "a.obj: line 12: 'x' is not a corner of a face");
+    let message = refusal("a.obj", "v 0 0 0\n\nf 1 \\\n 2\\\n x\n");
+    assert_eq!(message, "a.obj: line 3: 'x' is not a corner of a face");
+}
+
+#[test]
+fn lines_of_an_mtl_that_cannot_be_read_are_noted_once_with_their_line() {
+    let noted = |mtl: &str| {
+        let files = Files::new();
+        files.write("a.mtl", mtl);
+        files.write("a.obj", format!("mtllib a.mtl\n{SQUARE}usemtl red\nf 1 2 3\n"));
+        let mut notes = files.load("a.obj").expect("a sound file").notes;
+        notes.retain(|note| note.contains("a.mtl"));
+        notes
+    };
+    for line in ["Kd a b c", "Kd nan inf -1", "Kd 1 nan 0", "Ks 1 0", "Ke", "d nan", "Ns x"] {
+        let notes = noted(&format!("newmtl red\n{line}\n"));
+        assert_eq!(notes.len(), 1, "{line}: {notes:?}");
+        let told = format!("material file 'a.mtl', line 2: '{line}' should be ");
+        assert!(notes[0].starts_with(&told), "{notes:?}");
+    }
+    let notes = noted("newmtl red\n\nKd a b c\nd nan\nNs x\n");
+    assert_eq!(
+        notes,
+        [
+            "material file 'a.mtl', line 3: 'Kd a b c' should be 'Kd' and three numbers; it is left out, and so are 2 other lines"
+        ]
+    );
+    assert!(noted("newmtl red\nKd 1 0 0 # red\nd 1\nKs 0.5\nmap_Kd x\n").is_empty());
 }

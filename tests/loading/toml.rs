@@ -88,11 +88,20 @@ fn meshes_that_cannot_be_had_are_named() {
     assert!(mesh("").ends_with("mesh 1: give one of file, builtin, quads and triangles"));
     assert!(mesh("file = \"x.ply\"").contains("is no mesh; name an .obj, .glb or .gltf file"));
     assert!(mesh("triangles = []\nmaterial = \"gold\"").ends_with("there is no [materials.gold]"));
-    assert!(mesh("triangles = []").ends_with("a.toml: no triangles"));
+    assert_eq!(
+        mesh("triangles = []"),
+        "a.toml: line 1: mesh 1: triangles: no triangles; give at least one face that has an area"
+    );
     let files = Files::new();
     files.write("a.toml", "[[mesh]]\nfile = \"lost.obj\"\n");
     let message = files.load("a.toml").expect_err("there is none").to_string();
+    assert!(message.contains("a.toml: line 1: mesh 1: cannot read "), "{message}");
     assert!(message.contains("lost.obj: "), "{message}");
+    files.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    files.write("a.toml", format!("{TRIANGLE}\n[[mesh]]\nfile = \"points.obj\"\n"));
+    let message = files.refusal("a.toml");
+    assert!(message.starts_with("a.toml: line 4: mesh 2: "), "{message}");
+    assert!(message.contains("points.obj: no triangles; give at least"), "{message}");
 }
 
 #[test]
@@ -109,6 +118,7 @@ fn built_in_scenes_can_be_placed() {
     files.write("b.toml", "[[mesh]]\nbuiltin = \"teapot\"\n");
     let message = files.load("b.toml").expect_err("there is none").to_string();
     assert!(message.contains("'teapot'; built-in scenes: jittered-sparse"), "{message}");
+    assert!(message.contains("b.toml: line 1: mesh 1: "), "{message}");
 }
 
 #[test]
@@ -118,4 +128,64 @@ fn faults_in_a_mesh_are_counted() {
     files.write("a.toml", "[[mesh]]\nfile = \"a.obj\"\n[[mesh]]\nfile = \"a.obj\"\n");
     let scene = files.load("a.toml").expect("a sound file");
     assert_eq!((scene.triangles.len(), scene.dropped.out_of_range), (2, 2));
+}
+
+#[test]
+fn numbers_that_make_no_sense_are_refused_with_their_line_and_field() {
+    let camera = |fields: &str| format!("{TRIANGLE}[camera]\nposition = [0, 0, 5]\n{fields}\n");
+    let seen = "target = [0, 0, 0]";
+    let light = |kind: &str, fields: &str| {
+        let head = format!("{TRIANGLE}[[light]]\nkind = \"{kind}\"\n");
+        let place = if kind == "directional" { "" } else { "position = [0, 5, 0]\n" };
+        format!("{head}{place}{fields}\n")
+    };
+    let spot = |fields: &str| light("spot", &format!("intensity = [1, 1, 1]\n{fields}"));
+    let material = |field: &str| format!("{TRIANGLE}[materials.\"a.b\"]\n{field}\n");
+    let cases = [
+        (format!("exposure = 0\n{TRIANGLE}"), "line 1: exposure = 0 "),
+        (format!("\nexposure = -1.5\n{TRIANGLE}"), "line 2: exposure = -1.5 "),
+        (format!("exposure = nan\n{TRIANGLE}"), "line 1: exposure = nan "),
+        (format!("ambient = [0, -1, 0]\n{TRIANGLE}"), "line 1: ambient = [0, -1, 0] "),
+        (format!("background = [inf, 0, 0]\n{TRIANGLE}"), "line 1: background = [inf, 0, 0] "),
+        (format!("up = [0, 0, 0]\n{TRIANGLE}"), "line 1: up = [0, 0, 0] "),
+        (format!("up = [0, nan, 0]\n{TRIANGLE}"), "line 1: up = [0, nan, 0] "),
+        (format!("up = [0, 0, -2]\n{}", camera(seen)), "line 1: up = [0, 0, -2] "),
+        (camera("target = [0, 0, 5]"), "line 5: camera: target = [0, 0, 5] "),
+        (camera("target = [0, 0, 1e39]"), "line 5: camera: target = [0, 0, 1e39] "),
+        (camera(&format!("{seen}\nfield_of_view = 0")), "line 6: camera: field_of_view = 0 "),
+        (camera(&format!("{seen}\nfield_of_view = 180")), "line 6: camera: field_of_view = 180 "),
+        (camera(&format!("{seen}\nfield_of_view = nan")), "line 6: camera: field_of_view = nan "),
+        (camera(seen).replace("0, 0, 5", "0, inf, 5"), "line 4: camera: position = [0, inf, 5] "),
+        (material("diffuse = [-1, 0, 0]"), "line 4: materials.a.b: diffuse = [-1, 0, 0] "),
+        (material("highlight = [nan, 0, 0]"), "line 4: materials.a.b: highlight = "),
+        (material("emission = [1e39, 0, 0]"), "line 4: materials.a.b: emission = "),
+        (material("reflection = [0, 1.5, 0]"), "line 4: materials.a.b: reflection = "),
+        (material("transmission = [\n 2,\n 0, 0]"), "materials.a.b: transmission = [ 2, 0, 0] "),
+        (material("refraction_index = 0"), "line 4: materials.a.b: refraction_index = 0 "),
+        (material("shininess = -1"), "line 4: materials.a.b: shininess = -1 "),
+        (format!("{TRIANGLE}scale = [1, nan, 1]"), "line 3: mesh 1: scale = [1, nan, 1] "),
+        (light("point", "intensity = [-1, 0, 0]"), "line 6: light 1: intensity = [-1, 0, 0] "),
+        (light("point", "intensity = [0, 0, 1e39]"), "line 6: light 1: intensity = "),
+        (light("directional", "from = [0, 0, 0]\nirradiance = [1, 1, 1]"), "line 5: light 1: from"),
+        (
+            light("directional", "from = [0, 1, 0]\nirradiance = [nan, 1, 1]"),
+            "line 6: light 1: irr",
+        ),
+        (spot("target = [0, 5, 0]\nouter = 9"), "line 7: light 1: target = [0, 5, 0] "),
+        (spot(&format!("{seen}\ninner = 20\nouter = 9")), "line 8: light 1: inner = 20 "),
+        (spot(&format!("{seen}\ninner = -1\nouter = 9")), "line 8: light 1: inner = -1 "),
+        (spot(&format!("{seen}\nouter = 181")), "line 8: light 1: outer = 181 "),
+    ];
+    for (text, words) in cases {
+        let message = refusal("a.toml", &text);
+        assert!(message.starts_with("a.toml: line ") && message.contains(words), "{message}");
+        assert!(message.contains(" makes no sense; "), "{message}");
+    }
+}
+
+/// Where nothing is said of `up`, a camera may look straight down.
+#[test]
+fn a_camera_may_look_along_the_up_that_it_was_not_given() {
+    let text = format!("{TRIANGLE}[camera]\nposition = [0, 5, 0]\ntarget = [0, 0, 0]\n");
+    assert_eq!(scene("a.toml", text).camera.forward, DVec3::NEG_Y);
 }

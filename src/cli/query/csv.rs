@@ -1,4 +1,5 @@
 //! Rays as text: six numbers a line with commas between; lines that are blank or begin with `#` are skipped.
+//! Numbers and names may stand in double quotes.
 
 /// Characters of a bad line that a message shows.
 const SHOWN: usize = 60;
@@ -12,8 +13,14 @@ pub(super) struct BadLine {
     pub problem: String,
 }
 
+/// The columns, as a header may name them.
+const COLUMNS: [&str; 6] = ["ox", "oy", "oz", "tx", "ty", "tz"];
+
 /// How many bytes a byte order mark and a line of column names take at the beginning of a file, and how
-/// many lines that is. Names are six words of which none is a number; comments may come before.
+/// many lines that is. Comments may come before.
+///
+/// Only our own names in our own order are a header: other words may be damaged numbers, and in another
+/// order the columns mean something else.
 pub(super) fn header(bytes: &[u8]) -> (usize, u64) {
     let mark = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let mut end = mark;
@@ -21,8 +28,8 @@ pub(super) fn header(bytes: &[u8]) -> (usize, u64) {
         end += line.len();
         let line = String::from_utf8_lossy(line);
         if is_row(&line) {
-            let names = line.split(',').all(|word| word.trim().parse::<f64>().is_err());
-            return if names && line.split(',').count() == 6 { (end, number) } else { (mark, 0) };
+            let names = fields(&line).map(str::to_lowercase).eq(COLUMNS);
+            return if names { (end, number) } else { (mark, 0) };
         }
     }
     (mark, 0)
@@ -58,8 +65,9 @@ pub(super) fn decode(bytes: &[u8], rows: &mut Vec<[f64; 6]>) -> Result<u64, BadL
             rows.push(row);
         } else if is_row(line) {
             let shown: String = line.trim().chars().take(SHOWN).collect();
-            let problem =
-                format!("'{shown}' is not six numbers with commas between: ox,oy,oz,tx,ty,tz");
+            let problem = format!(
+                "'{shown}' is not six numbers with commas between; give ox,oy,oz,tx,ty,tz in this order (a header has these names)"
+            );
             return Err(BadLine { number: count, problem });
         }
     }
@@ -75,8 +83,17 @@ fn is_row(line: &str) -> bool {
     !line.is_empty() && !line.starts_with('#')
 }
 
+/// What stands between the commas, without blanks and quotes around it.
+fn fields(line: &str) -> impl Iterator<Item = &str> {
+    line.split(',').map(|field| {
+        let field = field.trim();
+        let quoted = field.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+        quoted.map_or(field, str::trim)
+    })
+}
+
 fn row(line: &str) -> Option<[f64; 6]> {
-    let mut words = line.split(',').map(|word| word.trim().parse());
+    let mut words = fields(line).map(str::parse);
     let mut row = [0.0; 6];
     for number in &mut row {
         *number = words.next()?.ok()?;
@@ -112,12 +129,30 @@ mod tests {
     }
 
     #[test]
-    fn a_header_is_six_words() {
+    fn numbers_in_quotes_are_read() {
+        let mut rows = Vec::new();
+        assert_eq!(decode(b"\"1\",\" 2\", \"3\" ,4,\"5\",\"6\"\n", &mut rows), Ok(1));
+        assert_eq!(rows, [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]]);
+        assert!(decode(b"\"1,2,3,4,5,6\n", &mut rows).is_err());
+    }
+
+    #[test]
+    fn a_header_is_our_names_in_our_order() {
         assert_eq!(header(b"ox,oy,oz,tx,ty,tz\n1,2,3,4,5,6\n"), (18, 1));
-        assert_eq!(header(b"\xef\xbb\xbf# rays\n\na,b,c,d,e,f\r\n"), (24, 3));
+        assert_eq!(header(b"\xef\xbb\xbf# rays\n\nox,oy,oz,tx,ty,tz\r\n"), (30, 3));
+        assert_eq!(header(b"\"OX\", oy,Oz,\"TX\",ty,tz\n"), (23, 1));
         assert_eq!(header(b"\xef\xbb\xbf1,2,3,4,5,6\n"), (3, 0));
         for row in ["1,2,3,4,5,6\n", "nan,nan,nan,nan,nan,nan\n", "a,2,3,4,5,6\n", "a;b;c\n", ""] {
             assert_eq!(header(row.as_bytes()), (0, 0), "{row}");
+        }
+    }
+
+    #[test]
+    fn a_first_line_that_is_no_header_is_no_row_that_may_be_lost() {
+        for line in ["tx,ty,tz,ox,oy,oz", "1e,--2,1f,2_0,$3,x", "a,b,c,d,e,f"] {
+            assert_eq!(header(line.as_bytes()), (0, 0), "{line}");
+            let error = decode(line.as_bytes(), &mut Vec::new()).unwrap_err();
+            assert!(error.problem.contains("give ox,oy,oz,tx,ty,tz in this order"));
         }
     }
 

@@ -25,7 +25,7 @@ use rows::{Format, Rows};
 
 const DETAILS: &str = "\
 Rays are rows of six numbers, ox,oy,oz,tx,ty,tz: an origin and a target. They are either lines of
-CSV (a first line of names, blank lines and lines that begin with # are skipped) or a NumPy array
+CSV (a header ox,oy,oz,tx,ty,tz, blank lines and lines that begin with # are skipped) or a NumPy array
 of shape (N, 6), float32 or float64, little-endian, saved as .npy. The answers are of the same kind
 and in the same order: a line 0 or 1 for each row, or an array of N uint8.
 
@@ -34,10 +34,10 @@ not part of the segment, and the origin is taken as given, without an offset. Tr
 do not block.
 
 Coordinates are those of the scene's file. Where umbra moves a scene that is far from the origin, it
-moves the rays by as much, in f64; then they are rounded to f32, once. A row with NaN, infinity or a
-number beyond f32 is answered 0; how many there were is said at the end. A line that is not six
-numbers ends the command: it says which, and no file is written (standard output may have had answers
-to lines before it).
+moves the rays by as much, in f64; then they are rounded to f32, once. A row with NaN or infinity, or in
+which a number or target - origin is beyond f32, is answered 0; how many there were is said at the end.
+A line that is not six numbers ends the command: it says which, and no file is written (standard output
+may have had answers to lines before it).
 
 Examples:
   umbra query chair-room --rays rays.csv -o blocked.csv
@@ -137,7 +137,7 @@ impl Query {
         );
         if counts.invalid > 0 {
             say!(
-                "umbra: {}: {} rows with NaN, infinity or a number beyond f32 are answered 0",
+                "umbra: {}: {} rows with NaN or infinity, or in which a number or target - origin is beyond f32, are answered 0",
                 self.rays.display(),
                 counts.invalid
             );

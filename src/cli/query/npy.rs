@@ -3,6 +3,9 @@
 /// What every `.npy` file begins with.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
+/// What to do about a damaged file.
+const SAVE_AGAIN: &str = "save it again with numpy.save";
+
 /// Numbers in a row.
 const COLUMNS: usize = 6;
 
@@ -21,7 +24,7 @@ pub(super) struct Layout {
 impl Layout {
     /// Reads the header, which must be whole; also says how long it is.
     pub fn read(bytes: &[u8]) -> Result<(Self, usize), String> {
-        let short = || "it ends within its header".to_owned();
+        let short = || format!("it ends within its header; {SAVE_AGAIN}");
         let version = *bytes.get(MAGIC.len()).ok_or_else(short)?;
         let at = MAGIC.len() + 2;
         let field = |size: usize| bytes.get(at..at + size).ok_or_else(short);
@@ -41,10 +44,12 @@ impl Layout {
 
     /// Understands `{'descr': '<f8', 'fortran_order': False, 'shape': (3, 6), }`.
     fn parse(header: &str) -> Result<Self, String> {
+        // Python writes either quote around a string.
+        let header = header.replace('"', "'");
         let value = |key: &str| {
             let (_, rest) = header
                 .split_once(&format!("'{key}':"))
-                .ok_or_else(|| format!("its header has no '{key}'"))?;
+                .ok_or_else(|| format!("its header has no '{key}'; {SAVE_AGAIN}"))?;
             Ok::<_, String>(rest.trim_start())
         };
         let kind = value("descr")?;
@@ -133,6 +138,13 @@ mod tests {
     }
 
     #[test]
+    fn either_quote_is_read() {
+        let header = "{\"descr\": \"<f8\", \"fortran_order\": False, \"shape\": (7, 6)}\n";
+        let (layout, _) = Layout::read(&file(1, header)).unwrap();
+        assert_eq!(layout, Layout { rows: 7, double: true });
+    }
+
+    #[test]
     fn other_arrays_are_refused_with_what_to_do() {
         for (kind, order, shape, told) in [
             ("'<i4'", "False", "(7, 6)", "its numbers are '<i4'; save rays.astype"),
@@ -151,7 +163,7 @@ mod tests {
             assert!(problem.contains(told), "{problem}");
         }
         assert!(Layout::read(&file(4, "")).unwrap_err().contains("version 4"));
-        assert!(Layout::read(&file(1, "{}")).unwrap_err().contains("no 'descr'"));
+        assert!(Layout::read(&file(1, "{}")).unwrap_err().contains("no 'descr'; save it again"));
         let whole = file(2, "{'descr': '<f4', 'fortran_order': False, 'shape': (7, 6), }\n");
         for length in MAGIC.len()..whole.len() - "rest".len() {
             assert!(Layout::read(&whole[..length]).unwrap_err().contains("ends within"));

@@ -1,6 +1,6 @@
 //! The bytes of a glTF file: JSON, buffers, accessors; every length is checked before it is used.
 
-use std::{borrow::Cow, fs, path::Path};
+use std::{borrow::Cow, path::Path};
 
 use ::gltf::json::{
     Root,
@@ -10,6 +10,7 @@ use ::gltf::json::{
 use glam::Vec3;
 
 use super::{Problem, item};
+use crate::scene::load::read_plain;
 
 const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
@@ -30,13 +31,19 @@ impl<'a> Container<'a> {
         let (json, blob) =
             if must_be_binary || bytes.starts_with(MAGIC) { split(bytes)? } else { (bytes, None) };
         let root = Root::from_slice(json).map_err(|e| format!("not glTF JSON: {e}"))?;
+        let version = &root.asset.version;
+        if version.split('.').next() != Some("2") {
+            return Err(format!(
+                "the file is of glTF version '{version}'; umbra reads version 2: convert it"
+            ));
+        }
         let buffers = root
             .buffers
             .iter()
             .enumerate()
             .map(|(index, buffer)| {
                 let bytes = match &buffer.uri {
-                    Some(uri) => Cow::Owned(read_uri(path, uri)?),
+                    Some(uri) => Cow::Owned(read_uri(path, uri, buffer.byte_length.0)?),
                     None => Cow::Borrowed(blob.ok_or("the binary chunk (BIN) is missing")?),
                 };
                 if (bytes.len() as u64) < buffer.byte_length.0 {
@@ -78,7 +85,12 @@ impl<'a> Container<'a> {
         let buffer = &self.buffers[view.buffer.value()];
 
         let size = kind.size() * dimensions.multiplicity();
-        let stride = view.byte_stride.as_ref().map_or(size, |stride| stride.0.max(size));
+        let stride = view.byte_stride.as_ref().map_or(size, |stride| stride.0);
+        if stride < size {
+            return wrong(&format!(
+                "has a byteStride of {stride}, less than its elements of {size} bytes; export the file again"
+            ));
+        }
         let start = view.byte_offset.map_or(0, |offset| offset.0);
         let bytes = slice(buffer, start, view.byte_length.0).and_then(|view| {
             view.get(usize::try_from(accessor.byte_offset.map_or(0, |o| o.0)).ok()?..)
@@ -170,15 +182,15 @@ fn chunk(bytes: &[u8]) -> Result<([&[u8]; 2], &[u8]), Problem> {
     Ok(([&header[4..], content], rest))
 }
 
-/// The bytes of a buffer outside the file, or inside it in base 64.
-fn read_uri(gltf: &Path, uri: &str) -> Result<Vec<u8>, Problem> {
+/// The first `length` bytes of a buffer outside the file, or all of one inside it in base 64.
+fn read_uri(gltf: &Path, uri: &str, length: u64) -> Result<Vec<u8>, Problem> {
     if let Some(data) = uri.strip_prefix("data:") {
         let text = data.split_once(";base64,").ok_or("a data URI is not in base 64")?.1;
         return decode_base64(text).ok_or_else(|| "a data URI is not in base 64".to_owned());
     }
     let name = decode_percent(uri);
     let path = gltf.parent().unwrap_or(Path::new("")).join(&name);
-    fs::read(path).map_err(|reason| format!("cannot read its buffer '{name}': {reason}"))
+    read_plain(&path, length).map_err(|reason| format!("cannot read its buffer '{name}': {reason}"))
 }
 
 fn decode_base64(text: &str) -> Option<Vec<u8>> {

@@ -82,7 +82,7 @@ impl Reader<'_> {
                 self.read_mesh(&root, item(&root.meshes, mesh.value(), "mesh")?, world)?;
             }
             if let Some(index) = node.camera {
-                self.read_camera(item(&root.cameras, index.value(), "camera")?, world)?;
+                self.read_camera(&root, index.value(), world)?;
             }
             if let Some(lights) =
                 node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref())
@@ -146,6 +146,16 @@ impl Reader<'_> {
             None => root.materials.len(),
         };
         let count = indices.as_ref().map_or(positions.count, |indices| indices.count);
+        if mode(primitive)? == Mode::Triangles && !count.is_multiple_of(3) {
+            let note = format!(
+                "a primitive has {count} corners, not three for each triangle: the last {} are left out",
+                count % 3
+            );
+            // A mesh may be placed many times.
+            if !self.draft.notes.contains(&note) {
+                self.draft.notes.push(note);
+            }
+        }
         let vertex = |i| indices.as_ref().map_or(i, |indices| indices.index(i));
         for corners in corners_of(mode(primitive)?, count) {
             let corners = corners.map(vertex);
@@ -167,9 +177,13 @@ impl Reader<'_> {
     }
 
     /// Takes the first perspective camera.
-    fn read_camera(&mut self, camera: &camera::Camera, world: DAffine3) -> Result<(), Problem> {
-        match &camera.perspective {
-            Some(perspective) if self.draft.camera.is_none() => {
+    fn read_camera(&mut self, root: &Root, index: usize, world: DAffine3) -> Result<(), Problem> {
+        use camera::Type;
+        let camera = item(&root.cameras, index, "camera")?;
+        match (camera.type_, &camera.perspective) {
+            (Checked::Valid(Type::Perspective), Some(perspective))
+                if self.draft.camera.is_none() =>
+            {
                 let axes = world.matrix3;
                 self.draft.camera = Some(Camera::facing(
                     world.translation,
@@ -178,8 +192,20 @@ impl Reader<'_> {
                     f64::from(perspective.yfov),
                 ));
             }
-            Some(_) => {}
-            None => self.note("an orthographic camera is left out"),
+            (Checked::Valid(Type::Perspective), Some(_)) => {}
+            (Checked::Valid(Type::Perspective), None) => {
+                return Err(format!(
+                    "camera {index} is a perspective one without 'perspective'; give it 'yfov' and 'znear' there"
+                ));
+            }
+            (Checked::Valid(Type::Orthographic), _) => {
+                self.note("an orthographic camera is left out");
+            }
+            (Checked::Invalid, _) => {
+                return Err(format!(
+                    "camera {index} is of an unknown type; give 'perspective' or 'orthographic'"
+                ));
+            }
         }
         Ok(())
     }
@@ -197,6 +223,14 @@ impl Reader<'_> {
                 Light::Directional { direction: backwards, irradiance: intensity }
             }
             (Checked::Valid(Type::Point), _) => Light::Point { position, intensity },
+            (Checked::Valid(Type::Spot), Some(cone))
+                if cone.inner_cone_angle > cone.outer_cone_angle =>
+            {
+                return Err(format!(
+                    "light {index} has an innerConeAngle of {}, more than its outerConeAngle of {}; give less",
+                    cone.inner_cone_angle, cone.outer_cone_angle
+                ));
+            }
             (Checked::Valid(Type::Spot), Some(cone)) => Light::Spot {
                 position,
                 axis: -backwards,
