@@ -8,7 +8,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{pool_for, print, write_json};
+use super::options::pool_for;
+use super::outputs::{print, write_json};
 use super::progress::with_rate;
 use crate::exact::adversary::Class;
 use crate::exact::campaign::{Summary, campaign};

@@ -7,9 +7,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{
-    ContenderOptions, check_outputs, load_scene, parse_size, pool, print, write_json,
-};
+use super::options::{ContenderOptions, load_scene, parse_size, pool};
+use super::outputs::{check_outputs, print, write_json};
 use super::progress::{with_bar, with_rate};
 use crate::measure::compare::{CompareError, Report, compare};
 use crate::measure::contender::Selection;
@@ -106,7 +105,7 @@ impl Compare {
         check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = pool(self.threads)?;
 
-        let scene = load_scene(&self.scene)?;
+        let scene = load_scene(&self.scene, &outputs)?;
         Recording::check(&scene, &settings)?;
         for reason in &left_out {
             say!("umbra: left out: {reason}");

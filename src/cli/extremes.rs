@@ -6,7 +6,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{pool_for, print, write_json};
+use super::options::pool_for;
+use super::outputs::{print, write_json};
 use super::progress::with_word;
 use crate::measure::extremes::cases::{Case, cases};
 use crate::measure::extremes::{Conditions, Report, examine, head};

@@ -5,6 +5,7 @@ mod compare;
 mod extremes;
 mod failure;
 mod options;
+mod outputs;
 mod paper;
 mod progress;
 mod query;

@@ -8,7 +8,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{check_outputs, parse_resolution, parse_size, print, write_json};
+use super::options::{parse_resolution, parse_size};
+use super::outputs::{check_outputs, print, write_json};
 use super::progress::with_bar;
 use crate::measure::paper::{
     Conditions, LOG, NODE_BYTES, Published, SceneReport, Storage, TABLE, VariantReport, callgrind,

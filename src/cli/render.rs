@@ -7,9 +7,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{
-    EngineOptions, ShadowOptions, check_outputs, load_scene, parse_size, write_json,
-};
+use super::options::{EngineOptions, ShadowOptions, load_scene, parse_size};
+use super::outputs::{check_outputs, write_json};
 use super::progress::with_bar;
 use crate::render::{
     Film, Order, Picture, Progress, Rendered, Settings, Shown, Statistics, forecast, render,
@@ -139,12 +138,12 @@ impl Render {
         let outputs: Vec<_> = outputs.chain(&self.stats).map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = self.engine.pool()?;
-        pool.install(|| self.render(kind, &settings))
+        pool.install(|| self.render(kind, &settings, &outputs))
     }
 
-    fn render(&self, kind: Picture, settings: &Settings) -> Result<(), Failure> {
+    fn render(&self, kind: Picture, settings: &Settings, outputs: &[&Path]) -> Result<(), Failure> {
         let start = Instant::now();
-        let scene = load_scene(&self.scene)?;
+        let scene = load_scene(&self.scene, outputs)?;
         let load_seconds = start.elapsed().as_secs_f64();
         if let Some(light) = self.aov_light.filter(|&light| light as usize >= scene.lights.len()) {
             return Err(Failure::Input(format!(

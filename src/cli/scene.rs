@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{check_outputs, write_json};
+use super::outputs::{check_outputs, write_json};
 use super::progress::with_word;
 use crate::scene::{self, builtin};
 

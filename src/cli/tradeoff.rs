@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{Failure, say};
-use super::options::{
-    ContenderOptions, check_outputs, load_scene, parse_size, pool, print, write_json,
-};
+use super::options::{ContenderOptions, load_scene, parse_size, pool};
+use super::outputs::{check_outputs, print, write_json};
 use super::progress::with_bar;
 use crate::measure::contender::{Choice, Contender, Selection};
 use crate::measure::tradeoff::{Conditions, Report, csv, measure, page, plot, table};
@@ -86,7 +85,7 @@ impl Tradeoff {
         let outputs: Vec<_> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = pool(self.threads)?;
-        let scene = load_scene(&self.scene)?;
+        let scene = load_scene(&self.scene, &outputs)?;
         // Of combinations that nobody named, nobody misses those that do not exist.
         for reason in left_out.iter().filter(|_| !self.contenders.methods.is_empty()) {
             say!("umbra: left out: {reason}");

@@ -15,7 +15,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{EngineOptions, check_outputs, load_scene, write_json};
+use super::options::{EngineOptions, load_scene};
+use super::outputs::{check_outputs, write_json};
 use super::progress::with_rate;
 use crate::geometry::Ray;
 use crate::occlusion::{Occlusion, Tally};
@@ -108,12 +109,12 @@ impl Query {
         let rows = Rows::open(rays)?;
         check_name(&self.output, rows.format)?;
         let pool = self.engine.pool()?;
-        pool.install(|| self.answer(rows))
+        pool.install(|| self.answer(rows, &outputs))
     }
 
-    fn answer(&self, mut rows: Rows) -> Result<(), Failure> {
+    fn answer(&self, mut rows: Rows, outputs: &[&Path]) -> Result<(), Failure> {
         let start = Instant::now();
-        let scene = load_scene(&self.scene)?;
+        let scene = load_scene(&self.scene, outputs)?;
         let load_seconds = start.elapsed().as_secs_f64();
         let (backend, build_seconds) = self.engine.build(&scene)?;
         let start = Instant::now();
