@@ -39,6 +39,17 @@ fn certify_stops_when_its_time_is_over() {
 }
 
 #[test]
+fn the_time_that_certify_takes_does_not_grow_with_the_queries_it_may_put() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = format!("certify --queries {} --classes grazing --seconds 1", u64::MAX);
+    let start = std::time::Instant::now();
+    let output = run(folder.path(), &line);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let seconds = start.elapsed().as_secs();
+    assert!(seconds < 60, "{seconds} s");
+}
+
+#[test]
 fn extremes_prints_a_line_a_case_and_writes_every_engine_and_test() {
     let folder = tempfile::tempdir().unwrap();
     let line =

@@ -73,7 +73,7 @@ impl Certify {
         let start = Instant::now();
         let done = AtomicU64::new(0);
         let rows = with_rate(
-            Some(self.queries * self.classes().count() as u64),
+            Some(self.queries.saturating_mul(self.classes().count() as u64)),
             || (done.load(Relaxed), done.load(Relaxed)),
             || pool.install(|| self.certify(start, &done)),
         );
@@ -105,11 +105,11 @@ impl Certify {
             .map(|class| (class, Row { class: class.name(), summary: Summary::default() }))
             .collect();
         let limit = self.seconds.map(Duration::from_secs);
-        for first in (0..self.queries).step_by(BLOCK as usize) {
-            let indices = first..self.queries.min(first + BLOCK);
+        'blocks: for first in (0..self.queries).step_by(BLOCK as usize) {
+            let indices = first..self.queries.min(first.saturating_add(BLOCK));
             for (class, row) in &mut rows {
                 if limit.is_some_and(|limit| start.elapsed() >= limit) {
-                    break;
+                    break 'blocks;
                 }
                 row.summary = row.summary + campaign(*class, indices.clone());
                 done.fetch_add(indices.end - indices.start, Relaxed);
