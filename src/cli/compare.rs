@@ -8,13 +8,12 @@ use serde::Serialize;
 
 use super::failure::{Failure, say};
 use super::options::{ContenderOptions, load_scene, parse_size, pool};
-use super::outputs::{check_outputs, print, write_json};
+use super::outputs::{Outputs, check_outputs, print};
 use super::progress::{with_bar, with_rate};
 use crate::measure::compare::{CompareError, Report, compare};
 use crate::measure::contender::Selection;
 use crate::measure::recording::Recording;
-use crate::render::{Picture, Progress, Settings, write_picture};
-use crate::whole_file::write_whole;
+use crate::render::{Picture, Progress, Settings, encode_picture};
 
 const DETAILS: &str = "\
 All combinations of backends, tests, methods and Embree variants that exist answer the shadow rays of one
@@ -123,12 +122,13 @@ impl Compare {
         })?;
 
         print(&format!("{report}{}", report.listing(self.show)))?;
+        let mut outputs = Outputs::default();
         if let Some(path) = &self.list {
-            write_whole(path, report.csv().as_bytes())
-                .map_err(|reason| Failure::unwritable(path, &reason))?;
+            outputs.add(path, report.csv().as_bytes())?;
         }
         if let (Some(path), Some(kind)) = (&self.difference, picture) {
-            write_picture(&report.difference_picture(&recording), 1.0, kind, path)?;
+            let picture = report.difference_picture(&recording);
+            outputs.add(path, &encode_picture(&picture, 1.0, kind))?;
         }
         if let Some(path) = &self.stats {
             let statistics = Statistics {
@@ -138,8 +138,9 @@ impl Compare {
                 left_out: &left_out,
                 report: &report,
             };
-            write_json(path, &statistics)?;
+            outputs.add_json(path, &statistics)?;
         }
+        outputs.finish()?;
         conclude(&report)
     }
 }

@@ -8,11 +8,11 @@ use serde::Serialize;
 
 use super::failure::{Failure, say};
 use super::options::{EngineOptions, ShadowOptions, load_scene, parse_size};
-use super::outputs::{check_outputs, write_json};
+use super::outputs::{Outputs, check_outputs};
 use super::progress::with_bar;
 use crate::render::{
-    Film, Order, Picture, Progress, Rendered, Settings, Shown, Statistics, forecast, render,
-    write_picture,
+    Film, Order, Picture, Progress, Rendered, Settings, Shown, Statistics, encode_picture,
+    forecast, render,
 };
 use crate::scene::{Dropped, builtin};
 use crate::shadow::{LightChoices, Settled, VerdictReport};
@@ -165,12 +165,14 @@ impl Render {
         let Rendered { film, mask, answers, statistics, .. } = rendered;
         let exposure =
             self.exposure.or(scene.exposure).unwrap_or_else(|| film.automatic_exposure());
-        write_picture(&film, exposure, kind, &self.output)?;
+        let mut files = Outputs::default();
+        files.add(&self.output, &encode_picture(&film, exposure, kind))?;
         if let (Some(mask), Some(answers)) = (mask, answers) {
             let films: [Film; PICTURES.len()] =
                 [mask.picture(), answers.outcome_picture(), answers.cost_picture()];
             for (film, what) in films.iter().zip(PICTURES) {
-                write_picture(film, 1.0, Picture::Png8, &beside(&self.output, what))?;
+                let picture = encode_picture(film, 1.0, Picture::Png8);
+                files.add(&beside(&self.output, what), &picture)?;
             }
         }
         let rays = statistics.rays;
@@ -210,7 +212,7 @@ impl Render {
         if choices.len() > SHOWN_LIGHTS {
             say!("umbra: and {} more lights, see --stats FILE", choices.len() - SHOWN_LIGHTS);
         }
-        let Some(stats) = &self.stats else { return Ok(()) };
+        let Some(stats) = &self.stats else { return files.finish() };
         let report = Report {
             scene: &scene.name,
             triangles: scene.triangles.len(),
@@ -236,7 +238,8 @@ impl Render {
             render_seconds,
             counts: statistics,
         };
-        write_json(stats, &report)
+        files.add_json(stats, &report)?;
+        files.finish()
     }
 }
 

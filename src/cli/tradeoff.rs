@@ -6,13 +6,12 @@ use clap::Args;
 
 use super::failure::{Failure, say};
 use super::options::{ContenderOptions, load_scene, parse_size, pool};
-use super::outputs::{check_outputs, print, write_json};
+use super::outputs::{Outputs, check_outputs, print};
 use super::progress::with_bar;
 use crate::measure::contender::{Choice, Contender, Selection};
 use crate::measure::tradeoff::{Conditions, Report, csv, measure, page, plot, table};
 use crate::render::{Progress, Settings};
 use crate::shadow::{Combination, Method};
-use crate::whole_file::write_whole;
 
 const DETAILS: &str = "\
 Three trades in one run: engines with their tests and shadow methods (speed, wrong answers, memory); the
@@ -100,17 +99,18 @@ impl Tradeoff {
     }
 
     fn write(&self, report: &Report) -> Result<(), Failure> {
+        let mut outputs = Outputs::default();
         if let Some(path) = &self.stats {
-            write_json(path, report)?;
+            outputs.add_json(path, report)?;
         }
-        let write = |path: &Option<PathBuf>, text: &dyn Fn() -> String| match path {
+        let mut add = |path: &Option<PathBuf>, text: &dyn Fn() -> String| match path {
             None => Ok(()),
-            Some(path) => write_whole(path, text().as_bytes())
-                .map_err(|reason| Failure::unwritable(path, &reason)),
+            Some(path) => outputs.add(path, text().as_bytes()),
         };
-        write(&self.csv, &|| csv(report))?;
-        write(&self.svg, &|| plot(report))?;
-        write(&self.html, &|| page(report, &command_line()))
+        add(&self.csv, &|| csv(report))?;
+        add(&self.svg, &|| plot(report))?;
+        add(&self.html, &|| page(report, &command_line()))?;
+        outputs.finish()
     }
 
     /// Whether a contender is measured unasked: what stands before Embree gains the same whatever Embree's

@@ -32,7 +32,7 @@ pub use light::{Illumination, Light};
 pub use load::{draft, load};
 pub use material::Material;
 pub use memory::default_budget;
-pub use write::{write, write_glb, write_obj};
+pub use write::{files, write};
 
 use crate::geometry::{Bounds, TriangleId, Triangles};
 

@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use super::failure::{Failure, say};
 use super::options::{EngineOptions, load_scene};
-use super::outputs::{check_outputs, write_json};
+use super::outputs::{Outputs, STANDARD_OUTPUT, check_outputs, unprinted};
 use super::progress::with_rate;
 use crate::geometry::Ray;
 use crate::occlusion::{Occlusion, Tally};
@@ -119,11 +119,13 @@ impl Query {
         let (backend, build_seconds) = self.engine.build(&scene)?;
         let start = Instant::now();
         let done = Done::default();
-        let counts = with_rate(
+        let (counts, file) = with_rate(
             rows.size,
             || (done.bytes.load(Relaxed), done.rows.load(Relaxed)),
             || answer_all(&mut rows, &*backend, scene.origin, &self.output, &done),
         )?;
+        let mut files = Outputs::default();
+        files.push(file);
         let query_seconds = start.elapsed().as_secs_f64();
         let rows_per_second = counts.rows as f64 / query_seconds;
         say!(
@@ -143,7 +145,7 @@ impl Query {
                 counts.invalid
             );
         }
-        let Some(stats) = &self.stats else { return Ok(()) };
+        let Some(stats) = &self.stats else { return files.finish() };
         let report = Report {
             scene: &scene.name,
             triangles: scene.triangles.len(),
@@ -161,7 +163,8 @@ impl Query {
             rows_per_second,
             counts,
         };
-        write_json(stats, &report)
+        files.add_json(stats, &report)?;
+        files.finish()
     }
 }
 
@@ -185,21 +188,22 @@ fn check_name(output: &Path, format: Format) -> Result<(), Failure> {
     )))
 }
 
-/// Answers block after block, each in parallel, and writes the answers in order.
+/// Answers block after block, each in parallel, and writes the answers in order, to a file that is not in its place yet.
 fn answer_all(
     rows: &mut Rows,
     backend: &dyn Occlusion,
     origin: DVec3,
     output: &Path,
     done: &Done,
-) -> Result<Counts, Failure> {
-    let unwritable = |reason: io::Error| match reason.kind() {
-        io::ErrorKind::BrokenPipe => Failure::NoReader,
-        _ => Failure::unwritable(output, &reason),
+) -> Result<(Counts, WholeFile), Failure> {
+    let unwritable = |reason: io::Error| match is_stream(output) {
+        true => unprinted(&reason),
+        false if reason.kind() == io::ErrorKind::BrokenPipe => Failure::NoReader,
+        false => Failure::unwritable(output, &reason),
     };
     let format = rows.format;
     let mut file = if is_stream(output) {
-        WholeFile::direct(io::stdout())
+        WholeFile::direct(STANDARD_OUTPUT, io::stdout())
     } else {
         WholeFile::create(output).map_err(unwritable)?
     };
@@ -230,8 +234,8 @@ fn answer_all(
     if counts.rows == 0 && format == Format::Csv {
         return Err(rows.bad("it has no rows; give rows ox,oy,oz,tx,ty,tz"));
     }
-    file.finish().map_err(unwritable)?;
-    Ok(counts)
+    file.flush().map_err(unwritable)?;
+    Ok((counts, file))
 }
 
 /// The answers to a part of the rows.
