@@ -109,22 +109,69 @@ fn sizes_samples_and_depths() {
     for samples in ["0", "65", "4294967295"] {
         render_refused(&format!("--samples {samples}"), &["samples", samples, "1 to 64"]);
     }
-    for samples in ["-1", "many", "4294967296"] {
-        render_refused(&format!("--samples={samples}"), &["--samples", samples]);
+    for samples in ["-1", "many", "1.5", "4294967296"] {
+        render_refused(&format!("--samples={samples}"), &["--samples", samples, "1 to 64"]);
     }
-    render_refused("--depth 200", &["depth 200"]);
-    render_refused("--exposure 0", &["--exposure", "above 0"]);
-    render_refused("--exposure nan", &["--exposure", "above 0"]);
+    render_refused("--depth 200", &["--depth", "200", "0 to 31"]);
+    for exposure in ["0", "nan", "inf", "-1"] {
+        render_refused(&format!("--exposure {exposure}"), &["--exposure", "finite", "above 0"]);
+    }
+    for threads in ["abc", "-3"] {
+        render_refused(&format!("--threads {threads}"), &["--threads", threads, "1 to 1024"]);
+    }
     for threads in ["0", "1025", "100000000"] {
         render_refused(&format!("--threads {threads}"), &["--threads", threads, "1 to 1024"]);
     }
     render_refused("--grid 0,1,1", &["--grid", "1 to 1024"]);
     render_refused("--grid 1024,1024,1024", &["--grid", "1073741824 voxels are too many"]);
     let line = "render drum -o new.png --tree-depth 32";
-    refused(workplace().path(), line, &["tree depth 32", "31"]);
+    refused(workplace().path(), line, &["--tree-depth", "32", "0 to 31"]);
     let line = "paper --quick --scene drum --every 0";
-    assert_refusal(&run(workplace().path(), line), &["every 0", "1 to 60"]);
+    assert_refusal(&run(workplace().path(), line), &["--every", "at least 1"]);
+    let line = "paper --quick --scene drum --every 61";
+    assert_refusal(&run(workplace().path(), line), &["every 61", "1 to 60"]);
     render_refused("--bits 9", &["--bits", "8, 16"]);
+}
+
+#[test]
+fn a_negative_number_is_a_value_of_its_option() {
+    let folder = workplace();
+    for (line, told) in [
+        ("render triangle.obj -o new.png --samples -1", ["--samples", "1 to 64"]),
+        ("render triangle.obj -o new.png --exposure -0.5", ["--exposure", "above 0"]),
+        ("compare triangle.obj --show -1", ["--show", "at least 0"]),
+        ("tradeoff triangle.obj --repetitions -2", ["--repetitions", "at least 1"]),
+        ("paper --every -9", ["--every", "at least 1"]),
+        ("certify --queries -5", ["--queries", "at least 1"]),
+        ("certify --seconds inf", ["--seconds", "a whole number of at least 1"]),
+        ("scene drum -o new.obj --tessellation -1", ["-1", "0.01 and 100"]),
+    ] {
+        refused(folder.path(), line, &told);
+        assert!(!said(&run(folder.path(), line)).contains("tip:"), "{line}");
+    }
+}
+
+#[test]
+fn options_that_would_change_nothing_are_refused() {
+    for (arguments, told) in [
+        ("--backend bvh2 --grid 8,8,8", ["--grid", "grid"]),
+        ("--backend cwbvh --uniform", ["--uniform", "grid"]),
+        ("--backend brute --lazy", ["--lazy", "grid"]),
+        ("--backend embree --shadows woo --retest not-cell", ["--retest", "another engine"]),
+        ("--reset-scanlines", ["--reset-scanlines", "--order scanline or serpentine"]),
+        ("--reset-scanlines --order tiles", ["--reset-scanlines", "tiles"]),
+    ] {
+        render_refused(arguments, &told);
+    }
+    let folder = workplace();
+    let line = "query triangle.obj --rays rays.csv -o out.csv --backend bvh2 --uniform";
+    refused(folder.path(), line, &["--uniform", "grid"]);
+    let line = "paper --quick --backends bvh2,cwbvh --uniform";
+    refused(folder.path(), line, &["--uniform", "grid"]);
+    if cfg!(feature = "embree") {
+        let line = "compare drum --size 8x6 --backends grid --embree-variants all";
+        refused(folder.path(), line, &["--embree-variants", "embree"]);
+    }
 }
 
 #[test]

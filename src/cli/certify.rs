@@ -8,7 +8,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::pool_for;
+use super::numbers::whole;
+use super::options::{MOST_THREADS, pool_for};
 use super::outputs::{print, write_json};
 use super::progress::with_rate;
 use crate::exact::adversary::Class;
@@ -35,17 +36,17 @@ Examples:
 #[command(after_help = DETAILS)]
 pub(super) struct Certify {
     /// Queries of each class
-    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = whole(1u64..))]
     queries: u64,
     /// Kinds of queries; all if not given
     #[arg(long, value_name = "NAMES", value_delimiter = ',',
           value_parser = clap::builder::PossibleValuesParser::new(Class::ALL.iter().map(|class| class.name())))]
     classes: Vec<String>,
     /// Stops after so long, with as many queries as there was time for
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = whole(1u64..))]
     seconds: Option<u64>,
     /// Threads; all processors if not given
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
     threads: Option<usize>,
     /// Writes the table as JSON
     #[arg(long, value_name = "FILE")]
@@ -69,7 +70,7 @@ struct Report<'a> {
 
 impl Certify {
     pub fn run(self) -> Result<(), Failure> {
-        let pool = pool_for(self.queries, self.stats.as_deref(), self.threads)?;
+        let pool = pool_for(self.stats.as_deref(), self.threads)?;
         let start = Instant::now();
         let done = AtomicU64::new(0);
         let rows = with_rate(

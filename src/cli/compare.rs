@@ -7,13 +7,14 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{ContenderOptions, load_scene, parse_size, pool};
+use super::numbers::whole;
+use super::options::{ContenderOptions, MOST_DEPTH, MOST_THREADS, load_scene, parse_size, pool};
 use super::outputs::{Outputs, check_outputs, print};
 use super::progress::{with_bar, with_rate};
 use crate::measure::compare::{CompareError, Report, compare};
 use crate::measure::contender::Selection;
 use crate::measure::recording::Recording;
-use crate::render::{Picture, Progress, Settings, encode_picture};
+use crate::render::{MOST_SAMPLES, Picture, Progress, Settings, encode_picture};
 
 const DETAILS: &str = "\
 All combinations of backends, tests, methods and Embree variants that exist answer the shadow rays of one
@@ -48,16 +49,16 @@ pub(super) struct Compare {
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "160x120")]
     size: (u32, u32),
     /// Samples along each side of a pixel: 3 gives 9 samples
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1..=MOST_SAMPLES))]
     samples: u32,
     /// Reflections and refractions that a ray may go through
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(0..=MOST_DEPTH))]
     depth: u8,
     /// Threads; all processors if not given
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
     threads: Option<usize>,
     /// Disagreements to print
-    #[arg(long, value_name = "N", default_value_t = 10)]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = whole(0usize..))]
     show: usize,
     /// Writes every disagreement as CSV: pixel, light, ray and its bits, triangle, exact verdict
     #[arg(long, value_name = "FILE")]

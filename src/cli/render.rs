@@ -7,12 +7,14 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{EngineOptions, ShadowOptions, load_scene, parse_size};
+use super::numbers::{positive, whole};
+use super::options::{EngineOptions, MOST_DEPTH, load_scene, parse_size};
 use super::outputs::{Outputs, check_outputs};
 use super::progress::with_bar;
+use super::shadows::ShadowOptions;
 use crate::render::{
-    Film, Order, Picture, Progress, Rendered, Settings, Shown, Statistics, encode_picture,
-    forecast, render,
+    Film, MOST_SAMPLES, Order, Picture, Progress, Rendered, Settings, Shown, Statistics,
+    encode_picture, forecast, render,
 };
 use crate::scene::{Dropped, builtin};
 use crate::shadow::{LightChoices, Settled, VerdictReport};
@@ -43,10 +45,10 @@ pub(super) struct Render {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Samples along each side of a pixel: 3 gives 9 samples
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1..=MOST_SAMPLES))]
     samples: u32,
     /// Reflections and refractions that a ray may go through
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(0..=MOST_DEPTH))]
     depth: u8,
     /// The order in which pixels are rendered
     #[arg(long, value_enum, default_value_t)]
@@ -55,14 +57,14 @@ pub(super) struct Render {
     #[arg(long, value_name = "N", default_value = "8", value_parser = ["8", "16"])]
     bits: String,
     /// Factor from radiance to picture; chosen from the picture if the scene says nothing
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", value_parser = positive)]
     exposure: Option<f32>,
     /// Also writes pictures of the shadows beside the output: NAME.mask.png (what is in shadow),
     /// NAME.shadows.png (how that was answered) and NAME.cost.png (what it cost)
     #[arg(long)]
     aov: bool,
     /// Shows answers and cost of one light, by its number from 0, instead of all together
-    #[arg(long, value_name = "N", requires = "aov")]
+    #[arg(long, value_name = "N", requires = "aov", value_parser = whole(0u32..))]
     aov_light: Option<u32>,
     /// Writes all counts and times as JSON
     #[arg(long, value_name = "FILE")]
@@ -130,9 +132,8 @@ impl Render {
             ..Settings::default()
         };
         settings.check()?;
-        if self.exposure.is_some_and(|e| !(e.is_finite() && e > 0.0)) {
-            return Err(Failure::Input("--exposure: give a number above 0".to_owned()));
-        }
+        self.engine.check()?;
+        self.shadows.check(self.engine.backend, self.order)?;
         let pictures = self.aov.then(|| PICTURES.map(|what| beside(&self.output, what)));
         let outputs = std::iter::once(&self.output).chain(pictures.iter().flatten());
         let outputs: Vec<_> = outputs.chain(&self.stats).map(PathBuf::as_path).collect();

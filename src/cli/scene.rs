@@ -6,6 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
+use super::numbers::finite;
 use super::outputs::{Outputs, check_outputs};
 use super::progress::with_word;
 use crate::scene::{self, builtin};
@@ -29,7 +30,7 @@ pub(super) struct SceneFile {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// How many times the triangles of the paper's scene: 0.01 to 100
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = finite::<f64>)]
     tessellation: f64,
     /// Writes all counts as JSON
     #[arg(long, value_name = "FILE")]

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{Failure, say};
-use super::options::{ContenderOptions, load_scene, parse_size, pool};
+use super::numbers::whole;
+use super::options::{ContenderOptions, MOST_DEPTH, MOST_THREADS, load_scene, parse_size, pool};
 use super::outputs::{Outputs, check_outputs, print};
 use super::progress::with_bar;
 use crate::measure::contender::{Choice, Contender, Selection};
 use crate::measure::tradeoff::{Conditions, Report, csv, measure, page, plot, table};
-use crate::render::{Progress, Settings};
+use crate::render::{MOST_SAMPLES, Progress, Settings};
 use crate::shadow::{Combination, Method};
 
 const DETAILS: &str = "\
@@ -43,16 +44,16 @@ pub(super) struct Tradeoff {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Samples along each side of a pixel: 3 gives 9 samples
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1..=MOST_SAMPLES))]
     samples: u32,
     /// Reflections and refractions that a ray may go through
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(0..=MOST_DEPTH))]
     depth: u8,
     /// How often everything is measured
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1usize..))]
     repetitions: Option<usize>,
     /// Threads; all processors if not given
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
     threads: Option<usize>,
     /// A small picture, measured once, of fewer contenders: to see what it shows
     #[arg(long)]

@@ -105,6 +105,7 @@ impl Query {
         let (scene, rays) = (Path::new(&self.scene), &*self.rays);
         let output = (!is_stream(&self.output)).then_some(&self.output);
         let outputs: Vec<_> = output.into_iter().chain(&self.stats).map(PathBuf::as_path).collect();
+        self.engine.check()?;
         check_outputs(&outputs, &[scene, rays])?;
         let rows = Rows::open(rays)?;
         check_name(&self.output, rows.format)?;
