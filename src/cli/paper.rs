@@ -74,7 +74,9 @@ pub(super) struct Paper {
         long,
         value_name = "FACTOR",
         default_value_t = 1.0,
-        default_value_if("quick", "true", "0.05"), value_parser = finite::<f64>)]
+        default_value_if("quick", "true", "0.05"),
+        value_parser = finite::<f64>
+    )]
     tessellation: f64,
     /// How often everything is measured; of each piece of a picture the least counts
     #[arg(long, value_name = "N", default_value_t = 3, default_value_if("quick", "true", "1"), value_parser = whole(1usize..))]
