@@ -109,21 +109,27 @@ fn sizes_samples_and_depths() {
     for samples in ["0", "65", "4294967295"] {
         render_refused(&format!("--samples {samples}"), &["samples", samples, "1 to 64"]);
     }
-    for samples in ["-1", "many", "4294967296"] {
-        render_refused(&format!("--samples={samples}"), &["--samples", samples]);
+    for samples in ["-1", "many", "1.5", "4294967296"] {
+        render_refused(&format!("--samples={samples}"), &["--samples", samples, "1 to 64"]);
     }
-    render_refused("--depth 200", &["depth 200"]);
-    render_refused("--exposure 0", &["--exposure", "above 0"]);
-    render_refused("--exposure nan", &["--exposure", "above 0"]);
+    render_refused("--depth 200", &["--depth", "200", "0 to 31"]);
+    for exposure in ["0", "nan", "inf", "-1"] {
+        render_refused(&format!("--exposure {exposure}"), &["--exposure", "finite", "above 0"]);
+    }
+    for threads in ["abc", "-3"] {
+        render_refused(&format!("--threads {threads}"), &["--threads", threads, "1 to 1024"]);
+    }
     for threads in ["0", "1025", "100000000"] {
         render_refused(&format!("--threads {threads}"), &["--threads", threads, "1 to 1024"]);
     }
     render_refused("--grid 0,1,1", &["--grid", "1 to 1024"]);
     render_refused("--grid 1024,1024,1024", &["--grid", "1073741824 voxels are too many"]);
     let line = "render drum -o new.png --tree-depth 32";
-    refused(workplace().path(), line, &["tree depth 32", "31"]);
+    refused(workplace().path(), line, &["--tree-depth", "32", "0 to 31"]);
     let line = "paper --quick --scene drum --every 0";
-    assert_refusal(&run(workplace().path(), line), &["every 0", "1 to 60"]);
+    assert_refusal(&run(workplace().path(), line), &["--every", "at least 1"]);
+    let line = "paper --quick --scene drum --every 61";
+    assert_refusal(&run(workplace().path(), line), &["every 61", "1 to 60"]);
     render_refused("--bits 9", &["--bits", "8, 16"]);
 }
 

@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::command::{TRIANGLE, refused, run, said};
+use common::command::{TRIANGLE, assert_refusal, refused, run, said, umbra};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -31,6 +31,23 @@ fn combinations_that_make_no_sense_are_refused_with_the_reason_and_the_names() {
         let told: Vec<&str> = names.iter().chain([&reason]).copied().collect();
         method_refused(&format!("--shadows {method}"), &told);
     }
+    for (method, reason) in [
+        ("nonsense", "there is no shadow method 'nonsense'"),
+        ("auto+shaft", "auto stands alone"),
+        ("shaft + auto", "auto stands alone"),
+    ] {
+        let arguments = ["render", "triangle.obj", "-o", "out.png", "--shadows", method];
+        let output = umbra(folder().path()).args(arguments).output().unwrap();
+        assert_refusal(&output, &[reason, "give auto; or trace", "voxel-occlusion"]);
+    }
+    for command in ["compare", "tradeoff"] {
+        let line = format!("{command} triangle.obj --methods trace,auto");
+        let told = &["--methods", "auto chooses among the methods", "give trace, or verdicts"];
+        refused(folder().path(), &line, told);
+    }
+    let output = run(folder().path(), "paper --quick --verdicts cache-tree");
+    assert_refusal(&output, &["cache-tree is no verdict; give verdicts (shaft, "]);
+    assert!(!said(&output).contains("memory"), "{}", said(&output));
     let exclude = "--shadows voxel-occlusion+woo --self-shadow exclude";
     let folder = folder();
     let output = run(folder.path(), &format!("render triangle.obj -o out.png {exclude}"));

@@ -39,6 +39,17 @@ fn certify_stops_when_its_time_is_over() {
 }
 
 #[test]
+fn the_time_that_certify_takes_does_not_grow_with_the_queries_it_may_put() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = format!("certify --queries {} --classes grazing --seconds 1", u64::MAX);
+    let start = std::time::Instant::now();
+    let output = run(folder.path(), &line);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let seconds = start.elapsed().as_secs();
+    assert!(seconds < 60, "{seconds} s");
+}
+
+#[test]
 fn extremes_prints_a_line_a_case_and_writes_every_engine_and_test() {
     let folder = tempfile::tempdir().unwrap();
     let line =
@@ -62,11 +73,14 @@ fn extremes_prints_a_line_a_case_and_writes_every_engine_and_test() {
 fn what_makes_no_sense_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let refuse = |line: &str, told: &[&str]| refused(folder.path(), line, told);
-    refuse("certify --queries 0", &["--queries 0", "at least 1"]);
+    refuse("certify --queries 0", &["--queries", "at least 1"]);
+    refuse("certify --seconds 0", &["--seconds", "at least 1"]);
     refuse("certify --classes silver", &["silver", "sliver"]);
-    refuse("certify --threads 0", &["--threads 0"]);
+    refuse("certify --threads 0", &["--threads", "1 to 1024"]);
     refuse("certify --stats nowhere/s.json", &["nowhere"]);
-    refuse("extremes --queries 0", &["--queries 0", "at least 1"]);
+    refuse("extremes --queries 0", &["--queries", "at least 1"]);
+    let nobody = "extremes --queries 10 --cases grazing --backends embree --tests exact";
+    refuse(nobody, &["nothing to test", "embree has no test 'exact'"]);
     refuse("extremes --cases at-corners", &["at-corners", "at-vertices"]);
     refuse("extremes --stats nowhere/s.json", &["nowhere"]);
 }

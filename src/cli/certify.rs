@@ -8,7 +8,9 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{pool_for, print, write_json};
+use super::numbers::whole;
+use super::options::{MOST_THREADS, pool_for};
+use super::outputs::{print, write_json};
 use super::progress::with_rate;
 use crate::exact::adversary::Class;
 use crate::exact::campaign::{Summary, campaign};
@@ -34,17 +36,17 @@ Examples:
 #[command(after_help = DETAILS)]
 pub(super) struct Certify {
     /// Queries of each class
-    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = whole(1u64..))]
     queries: u64,
     /// Kinds of queries; all if not given
     #[arg(long, value_name = "NAMES", value_delimiter = ',',
           value_parser = clap::builder::PossibleValuesParser::new(Class::ALL.iter().map(|class| class.name())))]
     classes: Vec<String>,
     /// Stops after so long, with as many queries as there was time for
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = whole(1u64..))]
     seconds: Option<u64>,
     /// Threads; all processors if not given
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
     threads: Option<usize>,
     /// Writes the table as JSON
     #[arg(long, value_name = "FILE")]
@@ -68,11 +70,11 @@ struct Report<'a> {
 
 impl Certify {
     pub fn run(self) -> Result<(), Failure> {
-        let pool = pool_for(self.queries, self.stats.as_deref(), self.threads)?;
+        let pool = pool_for(self.stats.as_deref(), self.threads)?;
         let start = Instant::now();
         let done = AtomicU64::new(0);
         let rows = with_rate(
-            Some(self.queries * self.classes().count() as u64),
+            Some(self.queries.saturating_mul(self.classes().count() as u64)),
             || (done.load(Relaxed), done.load(Relaxed)),
             || pool.install(|| self.certify(start, &done)),
         );
@@ -104,11 +106,11 @@ impl Certify {
             .map(|class| (class, Row { class: class.name(), summary: Summary::default() }))
             .collect();
         let limit = self.seconds.map(Duration::from_secs);
-        for first in (0..self.queries).step_by(BLOCK as usize) {
-            let indices = first..self.queries.min(first + BLOCK);
+        'blocks: for first in (0..self.queries).step_by(BLOCK as usize) {
+            let indices = first..self.queries.min(first.saturating_add(BLOCK));
             for (class, row) in &mut rows {
                 if limit.is_some_and(|limit| start.elapsed() >= limit) {
-                    break;
+                    break 'blocks;
                 }
                 row.summary = row.summary + campaign(*class, indices.clone());
                 done.fetch_add(indices.end - indices.start, Relaxed);

@@ -7,15 +7,14 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{
-    ContenderOptions, check_outputs, load_scene, parse_size, pool, print, write_json,
-};
+use super::numbers::whole;
+use super::options::{ContenderOptions, MOST_DEPTH, MOST_THREADS, load_scene, parse_size, pool};
+use super::outputs::{Outputs, check_outputs, print};
 use super::progress::{with_bar, with_rate};
 use crate::measure::compare::{CompareError, Report, compare};
 use crate::measure::contender::Selection;
 use crate::measure::recording::Recording;
-use crate::render::{Picture, Progress, Settings, write_picture};
-use crate::whole_file::write_whole;
+use crate::render::{MOST_SAMPLES, Picture, Progress, Settings, encode_picture};
 
 const DETAILS: &str = "\
 All combinations of backends, tests, methods and Embree variants that exist answer the shadow rays of one
@@ -50,16 +49,16 @@ pub(super) struct Compare {
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "160x120")]
     size: (u32, u32),
     /// Samples along each side of a pixel: 3 gives 9 samples
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1..=MOST_SAMPLES))]
     samples: u32,
     /// Reflections and refractions that a ray may go through
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(0..=MOST_DEPTH))]
     depth: u8,
     /// Threads; all processors if not given
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
     threads: Option<usize>,
     /// Disagreements to print
-    #[arg(long, value_name = "N", default_value_t = 10)]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = whole(0usize..))]
     show: usize,
     /// Writes every disagreement as CSV: pixel, light, ray and its bits, triangle, exact verdict
     #[arg(long, value_name = "FILE")]
@@ -106,7 +105,7 @@ impl Compare {
         check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = pool(self.threads)?;
 
-        let scene = load_scene(&self.scene)?;
+        let scene = load_scene(&self.scene, &outputs)?;
         Recording::check(&scene, &settings)?;
         for reason in &left_out {
             say!("umbra: left out: {reason}");
@@ -124,12 +123,13 @@ impl Compare {
         })?;
 
         print(&format!("{report}{}", report.listing(self.show)))?;
+        let mut outputs = Outputs::default();
         if let Some(path) = &self.list {
-            write_whole(path, report.csv().as_bytes())
-                .map_err(|reason| Failure::unwritable(path, &reason))?;
+            outputs.add(path, report.csv().as_bytes())?;
         }
         if let (Some(path), Some(kind)) = (&self.difference, picture) {
-            write_picture(&report.difference_picture(&recording), 1.0, kind, path)?;
+            let picture = report.difference_picture(&recording);
+            outputs.add(path, &encode_picture(&picture, 1.0, kind))?;
         }
         if let Some(path) = &self.stats {
             let statistics = Statistics {
@@ -139,8 +139,9 @@ impl Compare {
                 left_out: &left_out,
                 report: &report,
             };
-            write_json(path, &statistics)?;
+            outputs.add_json(path, &statistics)?;
         }
+        outputs.finish()?;
         conclude(&report)
     }
 }

@@ -6,11 +6,13 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{pool_for, print, write_json};
+use super::numbers::whole;
+use super::options::{MOST_THREADS, pool_for};
+use super::outputs::{print, write_json};
 use super::progress::with_word;
 use crate::measure::extremes::cases::{Case, cases};
 use crate::measure::extremes::{Conditions, Report, examine, head};
-use crate::occlusion::{Backend, Test};
+use crate::occlusion::{Backend, BackendError, Test};
 
 const DETAILS: &str = "\
 Wrong answers are counted per million, against the exact verdict: false blocked, then false clear. Ties, which touch
@@ -28,7 +30,7 @@ Examples:
 #[command(after_help = DETAILS)]
 pub(super) struct Extremes {
     /// Rays of each case; a fiftieth of it where there are a million triangles
-    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = whole(1usize..))]
     queries: usize,
     /// The cases, by the names in the table; all if not given
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = parse_case)]
@@ -40,7 +42,7 @@ pub(super) struct Extremes {
     #[arg(long, value_enum, value_delimiter = ',')]
     tests: Vec<Test>,
     /// Threads; all processors if not given
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
     threads: Option<usize>,
     /// Writes the table as JSON
     #[arg(long, value_name = "FILE")]
@@ -54,8 +56,12 @@ struct Table<'a> {
 
 impl Extremes {
     pub fn run(self) -> Result<(), Failure> {
-        let pool = pool_for(self.queries as u64, self.stats.as_deref(), self.threads)?;
+        let pool = pool_for(self.stats.as_deref(), self.threads)?;
         let conditions = self.conditions();
+        if let (true, Some(&test)) = (conditions.is_empty(), conditions.tests.first()) {
+            let reason = BackendError::NotInEmbree(test);
+            return Err(Failure::Input(format!("nothing to test: {reason}")));
+        }
         let wanted = |case: &Case| self.cases.is_empty() || self.cases.contains(&case.name);
         let cases: Vec<_> = cases().into_iter().filter(wanted).collect();
         print(&head())?;

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use crate::render::OutputError;
 use crate::scene::SceneError;
+use crate::whole_file::Unwritable;
 
 /// Prints a line to standard error; that nobody reads it is no failure.
 macro_rules! say {
@@ -84,6 +85,12 @@ impl From<SceneError> for Failure {
             SceneError::Unwritable { path, reason } => Self::unwritable(&path, &reason),
             error => Self::Input(error.to_string()),
         }
+    }
+}
+
+impl From<Unwritable> for Failure {
+    fn from(Unwritable { path, reason }: Unwritable) -> Self {
+        Self::unwritable(&path, &reason)
     }
 }
 

@@ -4,18 +4,21 @@ mod certify;
 mod compare;
 mod extremes;
 mod failure;
+mod numbers;
 mod options;
+mod outputs;
 mod paper;
 mod progress;
 mod query;
 mod render;
 mod scene;
+mod shadows;
 mod tradeoff;
 
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{Arg, CommandFactory, FromArgMatches, Parser, Subcommand};
 use failure::Failure;
 
 const DETAILS: &str = "\
@@ -53,10 +56,21 @@ enum Command {
     Scene(scene::SceneFile),
 }
 
+/// Reads the command line of this process. A negative number is a value, of which its option says what to give
+/// instead, and no option of its own.
+fn parse() -> Result<Cli, clap::Error> {
+    let negative = |argument: Arg| {
+        let takes_values = argument.get_action().takes_values();
+        if takes_values { argument.allow_negative_numbers(true) } else { argument }
+    };
+    let command = Cli::command().mut_subcommands(|command| command.mut_args(negative));
+    Cli::from_arg_matches(&command.try_get_matches()?)
+}
+
 /// Runs the command line of this process. Exit status 0: done; 1: a comparison failed; 2: bad input.
 #[must_use]
 pub fn main() -> ExitCode {
-    let outcome = match Cli::try_parse() {
+    let outcome = match parse() {
         Ok(Cli { command: Command::Render(render) }) => render.run(),
         Ok(Cli { command: Command::Compare(compare) }) => compare.run(),
         Ok(Cli { command: Command::Query(query) }) => query.run(),

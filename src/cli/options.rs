@@ -1,29 +1,27 @@
 //! Arguments that several commands share.
 
-use std::fmt;
-use std::fs::OpenOptions;
-use std::path::{Path, PathBuf};
-use std::str::FromStr;
+use std::path::Path;
 use std::time::Instant;
 
 use clap::Args;
 
 use super::failure::{Failure, say};
+use super::numbers::whole;
+use super::outputs::{check_apart, check_outputs};
 use super::progress::with_word;
 use crate::measure::contender;
 use crate::occlusion::{Backend, BackendError, BuildOptions, GridOptions, Occlusion, Test, build};
 use crate::scene::Scene;
-use crate::shadow::{
-    Auto, Combination, CombinationError, Method, MethodError, Plan, Prepared, Retest, SelfShadow,
-    VerdictKind, prepare,
-};
-use crate::whole_file::{folder_of, write_whole};
+use crate::shadow::Combination;
+
+/// Reflections and refractions at most: as many as the table of a ray's path holds.
+pub(super) const MOST_DEPTH: u8 = crate::shadow::Path::MAX_LEVEL;
 
 /// Voxels of a grid at most: 2 GiB before any triangle is in them.
 const MOST_VOXELS: u64 = 1 << 27;
 
 /// Threads at most: more than any machine has processors.
-const MOST_THREADS: usize = 1024;
+pub(super) const MOST_THREADS: usize = 1024;
 
 /// Which engine answers.
 #[derive(Args)]
@@ -50,7 +48,7 @@ pub(super) struct EngineOptions {
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
     pub memory: Option<u64>,
     /// Threads; all processors if not given
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
     pub threads: Option<usize>,
 }
 
@@ -159,21 +157,37 @@ impl EngineOptions {
         Ok(backend)
     }
 
+    /// Refuses what only the grid has, where another engine was asked for.
+    pub fn check(&self) -> Result<(), Failure> {
+        let options =
+            [("--grid", self.grid.is_some()), ("--uniform", self.uniform), ("--lazy", self.lazy)];
+        only_over(Backend::Grid, &[self.backend], &options)
+    }
+
     /// A pool of the threads that were asked for.
     pub fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
         pool(self.threads)
     }
 }
 
+/// Refuses options that were given for an engine which is not asked.
+pub(super) fn only_over(
+    backend: Backend,
+    asked: &[Backend],
+    options: &[(&str, bool)],
+) -> Result<(), Failure> {
+    match options.iter().find(|(_, is_given)| *is_given && !asked.contains(&backend)) {
+        None => Ok(()),
+        Some((option, _)) => Err(Failure::Input(format!(
+            "{option} is for {backend}, which is not asked; leave it out, or ask {backend}"
+        ))),
+    }
+}
+
 /// A pool of so many threads; of all processors if no number is given.
 pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
-    let threads = match threads {
-        Some(n) if (1..=MOST_THREADS).contains(&n) => n,
-        Some(n) => {
-            return Err(Failure::Input(format!("--threads {n}: give 1 to {MOST_THREADS}")));
-        }
-        None => 0,
-    };
+    // For rayon, 0 are all processors.
+    let threads = threads.unwrap_or(0);
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
@@ -190,7 +204,7 @@ pub(super) struct ContenderOptions {
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     tests: Vec<Test>,
     /// The methods that stand before the engines, as --shadows of render has them
-    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    #[arg(long, value_delimiter = ',', value_name = "LIST", value_parser = super::shadows::parse_method)]
     pub methods: Vec<Combination>,
     /// The ways to use Embree: names like avx2-high-8-coherent, `default`, or `all`
     #[cfg(feature = "embree")]
@@ -201,6 +215,11 @@ pub(super) struct ContenderOptions {
 impl ContenderOptions {
     /// What was named.
     pub fn choice(&self) -> Result<contender::Choice, Failure> {
+        #[cfg(feature = "embree")]
+        if !self.backends.is_empty() {
+            let variants = ("--embree-variants", !self.embree_variants.is_empty());
+            only_over(Backend::Embree, &self.backends, &[variants])?;
+        }
         Ok(contender::Choice {
             backends: self.backends.clone(),
             tests: self.tests.clone(),
@@ -213,188 +232,22 @@ impl ContenderOptions {
     }
 }
 
-/// The threads of a command that puts so many queries of its own making, once it is clear that it can run.
+/// The threads of a command that puts queries of its own making, once it is clear that it can run.
 pub(super) fn pool_for(
-    queries: u64,
     stats: Option<&Path>,
     threads: Option<usize>,
 ) -> Result<rayon::ThreadPool, Failure> {
-    if queries == 0 {
-        return Err(Failure::Input("--queries 0: give at least 1".to_owned()));
-    }
     check_outputs(&Vec::from_iter(stats), &[])?;
     pool(threads)
 }
 
-/// What stands before the engine.
-#[derive(Args)]
-pub(super) struct ShadowOptions {
-    #[arg(long, value_name = "METHOD", default_value_t, help = shadows_help())]
-    shadows: Choice,
-    /// What keeps a shadow ray from meeting the triangle that it starts on
-    #[arg(long, value_enum, default_value_t)]
-    self_shadow: SelfShadow,
-    /// Whether a traversal tests again what was tested from memory
-    #[arg(long, value_enum, default_value_t)]
-    retest: Retest,
-    /// Forgets what is remembered at the beginning of each scanline (orders by scanline)
-    #[arg(long)]
-    reset_scanlines: bool,
-    /// Bounces down to which a cache tree has nodes of its own
-    #[arg(long, value_name = "N", default_value_t = Plan::from(Method::CacheTree).tree_depth)]
-    tree_depth: u8,
-    /// For cache-tree-tolerance: how far apart rays may start, in diagonals of the scene, and point, in
-    /// half turns
-    #[arg(long, value_name = "SHARE", default_value_t = Plan::from(Method::CacheTree).tolerance)]
-    tolerance: f32,
-}
-
-/// Names every method.
-fn shadows_help() -> String {
-    format!(
-        "What stands before the engine: auto, which asks what turns out to be cheapest, light by light (over embree: shaft); or {}",
-        Combination::names()
-    )
-}
-
-/// A shadow method, or the program's choice.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Choice {
-    #[default]
-    Auto,
-    Given(Combination),
-}
-
-impl fmt::Display for Choice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Auto => f.write_str("auto"),
-            Self::Given(combination) => combination.fmt(f),
-        }
-    }
-}
-
-impl FromStr for Choice {
-    type Err = CombinationError;
-
-    fn from_str(text: &str) -> Result<Self, CombinationError> {
-        if text == "auto" { Ok(Self::Auto) } else { text.parse().map(Self::Given) }
-    }
-}
-
-impl ShadowOptions {
-    /// What was asked for, as it is written.
-    pub fn name(&self) -> String {
-        self.shadows.to_string()
-    }
-
-    /// Makes it ready for a scene and a backend with this test, within a memory limit, for about as many queries as
-    /// are expected.
-    pub fn prepare<'a>(
-        &self,
-        scene: &'a Scene,
-        backend: &'a dyn Occlusion,
-        engine: &EngineOptions,
-        expected: impl FnOnce() -> u64,
-    ) -> Result<Box<dyn Prepared + 'a>, MethodError> {
-        // Embree has no exact test, so nobody but Embree gives its bits, and there is nothing to choose among. Shafts answer
-        // all rays to lights, exactly, and in less time than Embree's single rays.
-        let embree = engine.backend == Backend::Embree && self.self_shadow == SelfShadow::Offset;
-        let given = match self.shadows {
-            Choice::Given(combination) => Some(combination),
-            Choice::Auto if embree => {
-                say!(
-                    "umbra: over embree, auto is shaft: exact; --shadows trace has Embree's own answers"
-                );
-                Some(VerdictKind::Shaft.into())
-            }
-            Choice::Auto => None,
-        };
-        let plan = Plan {
-            budget: engine.memory,
-            self_shadow: self.self_shadow,
-            retest: self.retest,
-            reset_scanlines: self.reset_scanlines,
-            tree_depth: self.tree_depth,
-            tolerance: self.tolerance,
-            ..given.unwrap_or_default().into()
-        };
-        if given.is_some() {
-            return prepare(plan, scene, backend);
-        }
-        let auto = Auto::new(plan, engine.test(), scene, backend)?;
-        Ok(Box::new(auto.expecting(expected())))
-    }
-}
-
-/// Loads a scene, and says what the program decided for the user.
-pub(super) fn load_scene(name: &str) -> Result<Scene, Failure> {
+/// Loads a scene, and says what the program decided for the user. No output may replace a file of the scene; which
+/// they are is known only now.
+pub(super) fn load_scene(name: &str, outputs: &[&Path]) -> Result<Scene, Failure> {
     let scene = with_word(&format!("loading {name}"), || crate::scene::load(name))?;
+    check_apart(outputs, &scene.files)?;
     for note in &scene.notes {
         say!("umbra: {}: {note}", scene.name);
     }
     Ok(scene)
-}
-
-/// Fails early where a file could not be written at the end, or would replace another of the command:
-/// an output, or an input.
-pub(super) fn check_outputs(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
-    let mut taken: Vec<_> = inputs.iter().filter_map(|input| input.canonicalize().ok()).collect();
-    for output in outputs {
-        check_writable(output)?;
-        let Some(place) = place_of(output) else { continue };
-        if taken.contains(&place) {
-            return Err(Failure::Input(format!(
-                "cannot write {}: the command reads or writes it already; give another name",
-                output.display()
-            )));
-        }
-        taken.push(place);
-    }
-    Ok(())
-}
-
-/// Fails early where a file could not be written at the end.
-fn check_writable(path: &Path) -> Result<(), Failure> {
-    let folder = folder_of(path);
-    let refuse =
-        |reason: String| Failure::Input(format!("cannot write {}: {reason}", path.display()));
-    if !folder.is_dir() {
-        return Err(refuse(format!("there is no folder {}; make it first", folder.display())));
-    }
-    let place = path.metadata().ok();
-    if place.as_ref().is_some_and(std::fs::Metadata::is_dir) {
-        return Err(refuse("it is a folder; give the name of a file".to_owned()));
-    }
-    let tried = match place {
-        // A device or a pipe: opening it may already do something.
-        Some(place) if !place.is_file() => return Ok(()),
-        // Renaming over a file does not ask whether it may be written; so ask here.
-        Some(_) => OpenOptions::new().append(true).open(path).map(drop),
-        None => Ok(()),
-    };
-    tried
-        .and_then(|()| tempfile::tempfile_in(folder).map(drop))
-        .map_err(|reason| Failure::unwritable(path, &reason))
-}
-
-/// Where a file is or will be, however it is named; none for devices and pipes, which nothing replaces.
-fn place_of(path: &Path) -> Option<PathBuf> {
-    match path.canonicalize() {
-        Ok(place) => place.is_file().then_some(place),
-        Err(_) => Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?)),
-    }
-}
-
-/// Writes statistics as JSON.
-pub(super) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
-    let mut text = serde_json::to_string_pretty(value).expect("statistics are plain data");
-    text.push('\n');
-    write_whole(path, text.as_bytes()).map_err(|reason| Failure::unwritable(path, &reason))
-}
-
-/// Writes to standard output.
-pub(super) fn print(text: &str) -> Result<(), Failure> {
-    use std::io::Write;
-    std::io::stdout().write_all(text.as_bytes()).map_err(|_| Failure::NoReader)
 }

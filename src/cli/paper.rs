@@ -8,16 +8,18 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::options::{check_outputs, parse_resolution, parse_size, print, write_json};
+use super::numbers::{finite, whole};
+use super::options::{MOST_DEPTH, only_over, parse_resolution, parse_size};
+use super::outputs::{check_outputs, print, write_json};
 use super::progress::with_bar;
 use crate::measure::paper::{
     Conditions, LOG, NODE_BYTES, Published, SceneReport, Storage, TABLE, VariantReport, callgrind,
     compare_variants, reproduce, storage, storage_table,
 };
 use crate::occlusion::{Backend, BuildOptions, GridOptions, Test};
-use crate::render::Progress;
+use crate::render::{MOST_SAMPLES, Progress};
 use crate::scene::builtin::NAMES;
-use crate::shadow::{Method, Plan, Retest, VerdictSet};
+use crate::shadow::{Combination, CombinationError, Method, Plan, Retest, VerdictKind, VerdictSet};
 
 const DETAILS: &str = "\
 Everything runs in one thread; the pictures are the paper's unless a size is given. All methods render
@@ -59,30 +61,31 @@ pub(super) struct Paper {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Samples along each side of a pixel, instead of the paper's: 3, and 1 for the drum
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_SAMPLES))]
     samples: Option<u32>,
     /// Renders one scanline of every so many only
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1u32..))]
     every: u32,
     /// Reflections and refractions that a ray may go through
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(0..=MOST_DEPTH))]
     depth: u8,
     /// Factor on the paper's triangles, from 0.01 to 100
     #[arg(
         long,
         value_name = "FACTOR",
         default_value_t = 1.0,
-        default_value_if("quick", "true", "0.05")
+        default_value_if("quick", "true", "0.05"),
+        value_parser = finite::<f64>
     )]
     tessellation: f64,
     /// How often everything is measured; of each piece of a picture the least counts
-    #[arg(long, value_name = "N", default_value_t = 3, default_value_if("quick", "true", "1"))]
+    #[arg(long, value_name = "N", default_value_t = 3, default_value_if("quick", "true", "1"), value_parser = whole(1usize..))]
     repetitions: usize,
     /// Whether a traversal tests again what was tested from memory
     #[arg(long, value_enum, default_value_t)]
     retest: Retest,
     /// Verdicts that every method asks first, like voxel-occlusion; none if not given
-    #[arg(long, default_value_t, hide_default_value = true)]
+    #[arg(long, default_value_t, hide_default_value = true, value_parser = parse_verdicts)]
     verdicts: VerdictSet,
     /// Compares what else the paper mentions, instead of printing its table
     #[arg(long, conflicts_with = "retest")]
@@ -155,6 +158,8 @@ impl Paper {
     pub fn run(self) -> Result<(), Failure> {
         let conditions = self.conditions();
         conditions.check(self.scenes())?;
+        let options = [("--grid", self.grid.is_some()), ("--uniform", self.uniform)];
+        only_over(Backend::Grid, &conditions.backends, &options)?;
         let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[])?;
         if self.instructions && self.callgrind_folder.is_none() {
@@ -204,6 +209,15 @@ impl Paper {
         }
         agreed(reports.iter().map(|report| (report.agree, report.backend)))
     }
+}
+
+/// Verdicts alone: of anything else it is said that memories are none.
+fn parse_verdicts(text: &str) -> Result<VerdictSet, String> {
+    let names = VerdictKind::ALL.map(VerdictKind::name).join(", ");
+    let to_give = format!("give verdicts ({names}), joined by +");
+    text.parse().map_err(|error: CombinationError| {
+        error.to_string().replace(&Combination::names(), &to_give)
+    })
 }
 
 /// Runs this very command again, under Valgrind.

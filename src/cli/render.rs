@@ -7,13 +7,14 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{
-    EngineOptions, ShadowOptions, check_outputs, load_scene, parse_size, write_json,
-};
+use super::numbers::{positive, whole};
+use super::options::{EngineOptions, MOST_DEPTH, load_scene, parse_size};
+use super::outputs::{Outputs, check_outputs};
 use super::progress::with_bar;
+use super::shadows::ShadowOptions;
 use crate::render::{
-    Film, Order, Picture, Progress, Rendered, Settings, Shown, Statistics, forecast, render,
-    write_picture,
+    Film, MOST_SAMPLES, Order, Picture, Progress, Rendered, Settings, Shown, Statistics,
+    encode_picture, forecast, render,
 };
 use crate::scene::{Dropped, builtin};
 use crate::shadow::{LightChoices, Settled, VerdictReport};
@@ -44,10 +45,10 @@ pub(super) struct Render {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Samples along each side of a pixel: 3 gives 9 samples
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1..=MOST_SAMPLES))]
     samples: u32,
     /// Reflections and refractions that a ray may go through
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(0..=MOST_DEPTH))]
     depth: u8,
     /// The order in which pixels are rendered
     #[arg(long, value_enum, default_value_t)]
@@ -56,14 +57,14 @@ pub(super) struct Render {
     #[arg(long, value_name = "N", default_value = "8", value_parser = ["8", "16"])]
     bits: String,
     /// Factor from radiance to picture; chosen from the picture if the scene says nothing
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", value_parser = positive)]
     exposure: Option<f32>,
     /// Also writes pictures of the shadows beside the output: NAME.mask.png (what is in shadow),
     /// NAME.shadows.png (how that was answered) and NAME.cost.png (what it cost)
     #[arg(long)]
     aov: bool,
     /// Shows answers and cost of one light, by its number from 0, instead of all together
-    #[arg(long, value_name = "N", requires = "aov")]
+    #[arg(long, value_name = "N", requires = "aov", value_parser = whole(0u32..))]
     aov_light: Option<u32>,
     /// Writes all counts and times as JSON
     #[arg(long, value_name = "FILE")]
@@ -131,20 +132,19 @@ impl Render {
             ..Settings::default()
         };
         settings.check()?;
-        if self.exposure.is_some_and(|e| !(e.is_finite() && e > 0.0)) {
-            return Err(Failure::Input("--exposure: give a number above 0".to_owned()));
-        }
+        self.engine.check()?;
+        self.shadows.check(self.engine.backend, self.order)?;
         let pictures = self.aov.then(|| PICTURES.map(|what| beside(&self.output, what)));
         let outputs = std::iter::once(&self.output).chain(pictures.iter().flatten());
         let outputs: Vec<_> = outputs.chain(&self.stats).map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = self.engine.pool()?;
-        pool.install(|| self.render(kind, &settings))
+        pool.install(|| self.render(kind, &settings, &outputs))
     }
 
-    fn render(&self, kind: Picture, settings: &Settings) -> Result<(), Failure> {
+    fn render(&self, kind: Picture, settings: &Settings, outputs: &[&Path]) -> Result<(), Failure> {
         let start = Instant::now();
-        let scene = load_scene(&self.scene)?;
+        let scene = load_scene(&self.scene, outputs)?;
         let load_seconds = start.elapsed().as_secs_f64();
         if let Some(light) = self.aov_light.filter(|&light| light as usize >= scene.lights.len()) {
             return Err(Failure::Input(format!(
@@ -166,12 +166,14 @@ impl Render {
         let Rendered { film, mask, answers, statistics, .. } = rendered;
         let exposure =
             self.exposure.or(scene.exposure).unwrap_or_else(|| film.automatic_exposure());
-        write_picture(&film, exposure, kind, &self.output)?;
+        let mut files = Outputs::default();
+        files.add(&self.output, &encode_picture(&film, exposure, kind))?;
         if let (Some(mask), Some(answers)) = (mask, answers) {
             let films: [Film; PICTURES.len()] =
                 [mask.picture(), answers.outcome_picture(), answers.cost_picture()];
             for (film, what) in films.iter().zip(PICTURES) {
-                write_picture(film, 1.0, Picture::Png8, &beside(&self.output, what))?;
+                let picture = encode_picture(film, 1.0, Picture::Png8);
+                files.add(&beside(&self.output, what), &picture)?;
             }
         }
         let rays = statistics.rays;
@@ -211,7 +213,7 @@ impl Render {
         if choices.len() > SHOWN_LIGHTS {
             say!("umbra: and {} more lights, see --stats FILE", choices.len() - SHOWN_LIGHTS);
         }
-        let Some(stats) = &self.stats else { return Ok(()) };
+        let Some(stats) = &self.stats else { return files.finish() };
         let report = Report {
             scene: &scene.name,
             triangles: scene.triangles.len(),
@@ -237,7 +239,8 @@ impl Render {
             render_seconds,
             counts: statistics,
         };
-        write_json(stats, &report)
+        files.add_json(stats, &report)?;
+        files.finish()
     }
 }
 

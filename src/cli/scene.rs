@@ -6,7 +6,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{check_outputs, write_json};
+use super::numbers::finite;
+use super::outputs::{Outputs, check_outputs};
 use super::progress::with_word;
 use crate::scene::{self, builtin};
 
@@ -29,7 +30,7 @@ pub(super) struct SceneFile {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// How many times the triangles of the paper's scene: 0.01 to 100
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = finite::<f64>)]
     tessellation: f64,
     /// Writes all counts as JSON
     #[arg(long, value_name = "FILE")]
@@ -61,23 +62,28 @@ impl SceneFile {
         let outputs = [Some(&self.output), beside.as_ref(), self.stats.as_ref()];
         let outputs: Vec<&Path> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[])?;
-        let scene = with_word(&format!("writing {}", self.name), || {
+        let (scene, files) = with_word(&format!("writing {}", self.name), || {
             let scene = builtin::draft_at(&self.name, self.tessellation)?.finish()?;
-            scene::write(&scene, &self.output)?;
-            Ok::<_, scene::SceneError>(scene)
+            let files = scene::files(&scene, &self.output)?;
+            Ok::<_, scene::SceneError>((scene, files))
         })?;
         let (triangles, materials, lights) =
             (scene.triangles.len(), scene.materials.len(), scene.lights.len());
+        let mut outputs = Outputs::default();
+        files.into_iter().for_each(|file| outputs.push(file));
+        if let Some(stats) = &self.stats {
+            let report = Report {
+                scene: &self.name,
+                tessellation: self.tessellation,
+                triangles,
+                opaque_triangles: scene.triangles.opaque_count(),
+                materials,
+                lights,
+            };
+            outputs.add_json(stats, &report)?;
+        }
+        outputs.finish()?;
         say!("{}: {triangles} triangles, {materials} materials, {lights} lights", self.name);
-        let Some(stats) = &self.stats else { return Ok(()) };
-        let report = Report {
-            scene: &self.name,
-            tessellation: self.tessellation,
-            triangles,
-            opaque_triangles: scene.triangles.opaque_count(),
-            materials,
-            lights,
-        };
-        write_json(stats, &report)
+        Ok(())
     }
 }

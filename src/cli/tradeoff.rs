@@ -5,15 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{Failure, say};
-use super::options::{
-    ContenderOptions, check_outputs, load_scene, parse_size, pool, print, write_json,
-};
+use super::numbers::whole;
+use super::options::{ContenderOptions, MOST_DEPTH, MOST_THREADS, load_scene, parse_size, pool};
+use super::outputs::{Outputs, check_outputs, print};
 use super::progress::with_bar;
 use crate::measure::contender::{Choice, Contender, Selection};
 use crate::measure::tradeoff::{Conditions, Report, csv, measure, page, plot, table};
-use crate::render::{Progress, Settings};
+use crate::render::{MOST_SAMPLES, Progress, Settings};
 use crate::shadow::{Combination, Method};
-use crate::whole_file::write_whole;
 
 const DETAILS: &str = "\
 Three trades in one run: engines with their tests and shadow methods (speed, wrong answers, memory); the
@@ -45,16 +44,16 @@ pub(super) struct Tradeoff {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Samples along each side of a pixel: 3 gives 9 samples
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1..=MOST_SAMPLES))]
     samples: u32,
     /// Reflections and refractions that a ray may go through
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(0..=MOST_DEPTH))]
     depth: u8,
     /// How often everything is measured
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1usize..))]
     repetitions: Option<usize>,
     /// Threads; all processors if not given
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
     threads: Option<usize>,
     /// A small picture, measured once, of fewer contenders: to see what it shows
     #[arg(long)]
@@ -86,7 +85,7 @@ impl Tradeoff {
         let outputs: Vec<_> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = pool(self.threads)?;
-        let scene = load_scene(&self.scene)?;
+        let scene = load_scene(&self.scene, &outputs)?;
         // Of combinations that nobody named, nobody misses those that do not exist.
         for reason in left_out.iter().filter(|_| !self.contenders.methods.is_empty()) {
             say!("umbra: left out: {reason}");
@@ -101,17 +100,18 @@ impl Tradeoff {
     }
 
     fn write(&self, report: &Report) -> Result<(), Failure> {
+        let mut outputs = Outputs::default();
         if let Some(path) = &self.stats {
-            write_json(path, report)?;
+            outputs.add_json(path, report)?;
         }
-        let write = |path: &Option<PathBuf>, text: &dyn Fn() -> String| match path {
+        let mut add = |path: &Option<PathBuf>, text: &dyn Fn() -> String| match path {
             None => Ok(()),
-            Some(path) => write_whole(path, text().as_bytes())
-                .map_err(|reason| Failure::unwritable(path, &reason)),
+            Some(path) => outputs.add(path, text().as_bytes()),
         };
-        write(&self.csv, &|| csv(report))?;
-        write(&self.svg, &|| plot(report))?;
-        write(&self.html, &|| page(report, &command_line()))
+        add(&self.csv, &|| csv(report))?;
+        add(&self.svg, &|| plot(report))?;
+        add(&self.html, &|| page(report, &command_line()))?;
+        outputs.finish()
     }
 
     /// Whether a contender is measured unasked: what stands before Embree gains the same whatever Embree's

@@ -27,7 +27,7 @@ pub use legend::{UNASKED, from_srgb, with_legend};
 pub use order::{Order, Place};
 pub use output::{OutputError, Picture, encode_picture, write_picture};
 pub use piecewise::{Pieces, Piecewise};
-pub use settings::{Settings, SettingsError};
+pub use settings::{MOST_SAMPLES, Settings, SettingsError};
 pub use statistics::{RayCounts, Statistics};
 pub use whitted::RecordedQuery;
 

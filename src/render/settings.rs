@@ -8,7 +8,7 @@ use crate::shadow::Path;
 const MOST_PIXELS: u64 = 1 << 28;
 
 /// Samples along each side of a pixel at most.
-const MOST_SAMPLES: u32 = 64;
+pub const MOST_SAMPLES: u32 = 64;
 
 /// Size, samples, depth and order of a render.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! A scene as loaders and generators hand it over: f64 world coordinates, nothing checked yet.
 
-use std::{fmt, sync::Arc};
+use std::{fmt, path::PathBuf, sync::Arc};
 
 use glam::{DVec3, Vec3};
 
@@ -74,6 +74,8 @@ pub struct Draft {
     pub dropped: Dropped,
     /// What the loader decided, one line each.
     pub notes: Vec<String>,
+    /// The files that were read.
+    pub files: Vec<PathBuf>,
 }
 
 /// Geometry stays where it is while its centre is within this many of its diagonals of the origin:
@@ -162,6 +164,7 @@ impl Draft {
             origin,
             dropped: self.dropped,
             notes: self.notes,
+            files: self.files,
         };
         match self.camera {
             Some(camera) => scene.camera = Camera { position: camera.position - origin, ..camera },

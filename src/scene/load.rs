@@ -84,9 +84,9 @@ pub(super) fn malformed(path: &Path, problem: impl Into<String>) -> SceneError {
     SceneError::Malformed { path: path.into(), problem: problem.into() }
 }
 
-/// A draft that is named after its file, with nothing in it.
+/// A draft of a file that was read, named after it, with nothing in it.
 pub(super) fn empty_draft(path: &Path) -> Draft {
-    Draft { name: path.display().to_string(), ..Draft::default() }
+    Draft { name: path.display().to_string(), files: vec![path.into()], ..Draft::default() }
 }
 
 fn extension(path: &Path) -> String {

@@ -21,7 +21,7 @@ mod sensible;
 mod toml;
 mod write;
 
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 
 use glam::{DVec3, Vec3};
 
@@ -32,7 +32,7 @@ pub use light::{Illumination, Light};
 pub use load::{draft, load};
 pub use material::Material;
 pub use memory::default_budget;
-pub use write::{write, write_glb, write_obj};
+pub use write::{files, write};
 
 use crate::geometry::{Bounds, TriangleId, Triangles};
 
@@ -66,6 +66,8 @@ pub struct Scene {
     pub dropped: Dropped,
     /// What the program decided for the user (a camera, lights, a shift): one line each.
     pub notes: Vec<String>,
+    /// The files that it was read from: whatever the file named pulls in, too.
+    pub files: Vec<PathBuf>,
 }
 
 impl Scene {

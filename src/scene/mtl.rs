@@ -8,17 +8,20 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::{
-    Material,
+    Draft, Material,
     load::{read_plain, without_mark},
 };
 
 /// Reads what an `mtllib` line of the OBJ file `obj` names: one file, whose name may hold spaces, or
-/// several. A missing one is noted.
-pub(super) fn read_libraries(obj: &Path, names: &str, notes: &mut Vec<String>) -> Vec<Material> {
+/// several. Those that were read and those that are missing are noted.
+pub(super) fn read_libraries(obj: &Path, names: &str, draft: &mut Draft) -> Vec<Material> {
     let folder = obj.parent().unwrap_or(Path::new(""));
-    let open = |name: &str| {
-        let file = folder.join(name.trim().replace('\\', "/"));
-        read_plain(&file, u64::MAX).ok().map(without_mark)
+    let (files, notes) = (&mut draft.files, &mut draft.notes);
+    let mut open = |name: &str| {
+        let path = folder.join(name.trim().replace('\\', "/"));
+        let bytes = read_plain(&path, u64::MAX).ok().map(without_mark)?;
+        files.push(path);
+        Some(bytes)
     };
     if let Some(bytes) = open(names) {
         return parse(names.trim(), &String::from_utf8_lossy(&bytes), notes);

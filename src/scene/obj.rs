@@ -35,7 +35,7 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
     let mut materials = Materials::default();
     let mut draft = empty_draft(path);
     draft.choose_surroundings = true;
-    let vertices = read_vertices(path, &text, &mut materials, &mut draft.notes)?;
+    let vertices = read_vertices(path, &text, &mut materials, &mut draft)?;
     read_faces(path, &text, &vertices, &mut materials, &mut draft)?;
     if materials.undefined > 0 {
         draft.notes.push(format!(
@@ -119,7 +119,7 @@ fn read_vertices(
     path: &Path,
     text: &str,
     materials: &mut Materials,
-    notes: &mut Vec<String>,
+    draft: &mut Draft,
 ) -> Result<Vertices, SceneError> {
     let mut vertices = Vertices::default();
     for (number, keyword, rest) in lines(text) {
@@ -137,7 +137,7 @@ fn read_vertices(
             "v" => vertices.positions.push(vector()?),
             "vn" => vertices.normals.push(vector()?.as_vec3()),
             "mtllib" => {
-                for material in mtl::read_libraries(path, rest, notes) {
+                for material in mtl::read_libraries(path, rest, draft) {
                     materials.add(material);
                 }
             }

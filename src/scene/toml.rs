@@ -237,6 +237,7 @@ fn add_mesh(path: &Path, draft: &mut Draft, entry: &MeshEntry) -> Result<(), Str
         draft.materials.extend(mesh.materials);
     }
     draft.notes.extend(mesh.notes);
+    draft.files.extend(mesh.files);
     draft.dropped.out_of_range += mesh.dropped.out_of_range;
     draft.dropped.not_finite += mesh.dropped.not_finite;
     draft.dropped.zero_area += mesh.dropped.zero_area;

@@ -15,7 +15,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{EngineOptions, check_outputs, load_scene, write_json};
+use super::options::{EngineOptions, load_scene};
+use super::outputs::{Outputs, STANDARD_OUTPUT, check_outputs, unprinted};
 use super::progress::with_rate;
 use crate::geometry::Ray;
 use crate::occlusion::{Occlusion, Tally};
@@ -104,25 +105,28 @@ impl Query {
         let (scene, rays) = (Path::new(&self.scene), &*self.rays);
         let output = (!is_stream(&self.output)).then_some(&self.output);
         let outputs: Vec<_> = output.into_iter().chain(&self.stats).map(PathBuf::as_path).collect();
+        self.engine.check()?;
         check_outputs(&outputs, &[scene, rays])?;
         let rows = Rows::open(rays)?;
         check_name(&self.output, rows.format)?;
         let pool = self.engine.pool()?;
-        pool.install(|| self.answer(rows))
+        pool.install(|| self.answer(rows, &outputs))
     }
 
-    fn answer(&self, mut rows: Rows) -> Result<(), Failure> {
+    fn answer(&self, mut rows: Rows, outputs: &[&Path]) -> Result<(), Failure> {
         let start = Instant::now();
-        let scene = load_scene(&self.scene)?;
+        let scene = load_scene(&self.scene, outputs)?;
         let load_seconds = start.elapsed().as_secs_f64();
         let (backend, build_seconds) = self.engine.build(&scene)?;
         let start = Instant::now();
         let done = Done::default();
-        let counts = with_rate(
+        let (counts, file) = with_rate(
             rows.size,
             || (done.bytes.load(Relaxed), done.rows.load(Relaxed)),
             || answer_all(&mut rows, &*backend, scene.origin, &self.output, &done),
         )?;
+        let mut files = Outputs::default();
+        files.push(file);
         let query_seconds = start.elapsed().as_secs_f64();
         let rows_per_second = counts.rows as f64 / query_seconds;
         say!(
@@ -142,7 +146,7 @@ impl Query {
                 counts.invalid
             );
         }
-        let Some(stats) = &self.stats else { return Ok(()) };
+        let Some(stats) = &self.stats else { return files.finish() };
         let report = Report {
             scene: &scene.name,
             triangles: scene.triangles.len(),
@@ -160,7 +164,8 @@ impl Query {
             rows_per_second,
             counts,
         };
-        write_json(stats, &report)
+        files.add_json(stats, &report)?;
+        files.finish()
     }
 }
 
@@ -184,21 +189,22 @@ fn check_name(output: &Path, format: Format) -> Result<(), Failure> {
     )))
 }
 
-/// Answers block after block, each in parallel, and writes the answers in order.
+/// Answers block after block, each in parallel, and writes the answers in order, to a file that is not in its place yet.
 fn answer_all(
     rows: &mut Rows,
     backend: &dyn Occlusion,
     origin: DVec3,
     output: &Path,
     done: &Done,
-) -> Result<Counts, Failure> {
-    let unwritable = |reason: io::Error| match reason.kind() {
-        io::ErrorKind::BrokenPipe => Failure::NoReader,
-        _ => Failure::unwritable(output, &reason),
+) -> Result<(Counts, WholeFile), Failure> {
+    let unwritable = |reason: io::Error| match is_stream(output) {
+        true => unprinted(&reason),
+        false if reason.kind() == io::ErrorKind::BrokenPipe => Failure::NoReader,
+        false => Failure::unwritable(output, &reason),
     };
     let format = rows.format;
     let mut file = if is_stream(output) {
-        WholeFile::direct(io::stdout())
+        WholeFile::direct(STANDARD_OUTPUT, io::stdout())
     } else {
         WholeFile::create(output).map_err(unwritable)?
     };
@@ -229,8 +235,8 @@ fn answer_all(
     if counts.rows == 0 && format == Format::Csv {
         return Err(rows.bad("it has no rows; give rows ox,oy,oz,tx,ty,tz"));
     }
-    file.finish().map_err(unwritable)?;
-    Ok(counts)
+    file.flush().map_err(unwritable)?;
+    Ok((counts, file))
 }
 
 /// The answers to a part of the rows.

@@ -39,6 +39,20 @@ pub struct Conditions {
     pub tests: Vec<Test>,
 }
 
+impl Conditions {
+    /// Whether there is nobody to ask: no engine has any of the tests.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        let asked = |&test: &Test| self.backends.iter().any(|&backend| has(backend, test));
+        !self.tests.iter().any(asked)
+    }
+}
+
+/// Whether an engine has a test.
+fn has(backend: Backend, test: Test) -> bool {
+    backend != Backend::Embree || matches!(test, Test::Pluecker | Test::Moller)
+}
+
 /// What one engine answered in one case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Answers {
@@ -121,10 +135,10 @@ pub fn examine(case: &Case, conditions: &Conditions) -> Result<Report, BackendEr
     for &test in &conditions.tests {
         let brute = answers(Backend::Brute, test, &mesh, &rays)?;
         for &backend in &conditions.backends {
-            let is_peer = backend == Backend::Embree;
-            if is_peer && !matches!(test, Test::Pluecker | Test::Moller) {
+            if !has(backend, test) {
                 continue;
             }
+            let is_peer = backend == Backend::Embree;
             let answers = answers(backend, test, &mesh, &rays)?;
             let both = || answers.iter().zip(&verdicts);
             let wrong = |said: bool, truth: Verdict| {

@@ -1,6 +1,9 @@
 //! The bytes of a glTF file: JSON, buffers, accessors; every length is checked before it is used.
 
-use std::{borrow::Cow, path::Path};
+use std::{
+    borrow::Cow,
+    path::{Path, PathBuf},
+};
 
 use ::gltf::json::{
     Root,
@@ -18,11 +21,16 @@ const CHUNK_HEADER: usize = 8;
 /// What a GLB begins with.
 pub const MAGIC: &[u8] = b"glTF";
 
+/// What a URI begins with that holds the bytes itself.
+const DATA: &str = "data:";
+
 /// A glTF file with its buffers.
 pub(super) struct Container<'a> {
     pub(super) root: Root,
     pub(super) json: &'a [u8],
     buffers: Vec<Cow<'a, [u8]>>,
+    /// The files that hold buffers.
+    pub(super) files: Vec<PathBuf>,
 }
 
 impl<'a> Container<'a> {
@@ -56,7 +64,10 @@ impl<'a> Container<'a> {
                 Ok(bytes)
             })
             .collect::<Result<_, Problem>>()?;
-        Ok(Self { root, json, buffers })
+        let uris = root.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
+        let files =
+            uris.filter(|uri| !uri.starts_with(DATA)).map(|uri| beside(path, uri)).collect();
+        Ok(Self { root, json, buffers, files })
     }
 
     /// The elements of an accessor, if it is of the wanted type and lies within its buffer.
@@ -184,13 +195,17 @@ fn chunk(bytes: &[u8]) -> Result<([&[u8]; 2], &[u8]), Problem> {
 
 /// The first `length` bytes of a buffer outside the file, or all of one inside it in base 64.
 fn read_uri(gltf: &Path, uri: &str, length: u64) -> Result<Vec<u8>, Problem> {
-    if let Some(data) = uri.strip_prefix("data:") {
+    if let Some(data) = uri.strip_prefix(DATA) {
         let text = data.split_once(";base64,").ok_or("a data URI is not in base 64")?.1;
         return decode_base64(text).ok_or_else(|| "a data URI is not in base 64".to_owned());
     }
-    let name = decode_percent(uri);
-    let path = gltf.parent().unwrap_or(Path::new("")).join(&name);
-    read_plain(&path, length).map_err(|reason| format!("cannot read its buffer '{name}': {reason}"))
+    read_plain(&beside(gltf, uri), length)
+        .map_err(|reason| format!("cannot read its buffer '{}': {reason}", decode_percent(uri)))
+}
+
+/// The file that a URI names.
+fn beside(gltf: &Path, uri: &str) -> PathBuf {
+    gltf.parent().unwrap_or(Path::new("")).join(decode_percent(uri))
 }
 
 fn decode_base64(text: &str) -> Option<Vec<u8>> {

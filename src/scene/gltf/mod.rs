@@ -58,6 +58,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn read(mut self) -> Result<Draft, Problem> {
         let root = std::mem::take(&mut self.container.root);
+        self.draft.files.append(&mut self.container.files);
         check_extensions(&root)?;
         self.draft.materials = root.materials.iter().map(material::material).collect();
         // What has no material is plain grey.

@@ -6,11 +6,12 @@ use std::{collections::HashMap, io, io::Write, path::Path};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
-use super::{Run, material_names, runs, unwritable, write_whole};
+use super::{Run, material_names, runs, unwritable, whole_file};
 use crate::scene::{
     Camera, Light, Material, Scene, SceneError,
     material::{Extras, Surroundings},
 };
+use crate::whole_file::WholeFile;
 
 /// glTF numbers for types and targets.
 const FLOAT: u32 = 5126;
@@ -18,11 +19,11 @@ const UNSIGNED_INT: u32 = 5125;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// Writes a GLB.
+/// A GLB.
 ///
 /// # Errors
 /// [`SceneError::Unwritable`], also beyond the 4 GiB that a GLB holds.
-pub fn write_glb(scene: &Scene, path: &Path) -> Result<(), SceneError> {
+pub(super) fn file(scene: &Scene, path: &Path) -> Result<WholeFile, SceneError> {
     let mut blob = Blob::default();
     let primitives: Vec<Value> = runs(scene).iter().map(|run| blob.primitive(scene, run)).collect();
     let mut nodes = vec![
@@ -70,7 +71,7 @@ pub fn write_glb(scene: &Scene, path: &Path) -> Result<(), SceneError> {
     // No chunk is longer than the whole.
     let length = u32::try_from(length)
         .map_err(|_| unwritable(path)(io::Error::other("a GLB holds no more than 4 GiB")))?;
-    write_whole(path, |file| {
+    whole_file(path, |file| {
         file.write_all(b"glTF")?;
         file.write_all(&2u32.to_le_bytes())?;
         file.write_all(&length.to_le_bytes())?;

@@ -9,19 +9,26 @@ use std::{io, ops::Range, path::Path};
 use glam::Vec3;
 
 use super::{Scene, SceneError};
-use crate::whole_file::WholeFile;
-pub use glb::write_glb;
-pub use obj::write_obj;
+use crate::whole_file::{Unwritable, WholeFile, finish_all};
 
 /// Writes a scene as the end of the name says: `.obj` (with an `.mtl` beside it) or `.glb`.
 ///
 /// # Errors
-/// [`SceneError::Unwritable`], also for any other name.
+/// [`SceneError::Unwritable`], also for any other name; nothing is written then.
 pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
+    finish_all(files(scene, path)?)
+        .map_err(|Unwritable { path, reason }| SceneError::Unwritable { path, reason })
+}
+
+/// The files of [`write`], whole but not in their places yet.
+///
+/// # Errors
+/// [`SceneError::Unwritable`], also for any other name.
+pub fn files(scene: &Scene, path: &Path) -> Result<Vec<WholeFile>, SceneError> {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     match extension.to_str() {
-        Some("obj") => write_obj(scene, path),
-        Some("glb") => write_glb(scene, path),
+        Some("obj") => obj::files(scene, path),
+        Some("glb") => Ok(vec![glb::file(scene, path)?]),
         _ => Err(unwritable(path)(io::Error::other("scenes are written as .obj or .glb"))),
     }
 }
@@ -30,15 +37,15 @@ fn unwritable(path: &Path) -> impl Fn(io::Error) -> SceneError {
     move |reason| SceneError::Unwritable { path: path.into(), reason }
 }
 
-/// Writes a file under another name beside it, and renames it once it is whole.
-fn write_whole(
+/// A file with this content, not in its place yet.
+fn whole_file(
     path: &Path,
     content: impl FnOnce(&mut WholeFile) -> io::Result<()>,
-) -> Result<(), SceneError> {
+) -> Result<WholeFile, SceneError> {
     let write = || {
         let mut file = WholeFile::create(path)?;
         content(&mut file)?;
-        file.finish()
+        Ok(file)
     };
     write().map_err(unwritable(path))
 }

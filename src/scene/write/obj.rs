@@ -4,27 +4,29 @@ use std::{collections::HashMap, io::Write, path::Path};
 
 use glam::Vec3;
 
-use super::{material_names, runs, unwritable, write_whole};
+use super::{material_names, runs, unwritable, whole_file};
 use crate::scene::{Material, Scene, SceneError};
+use crate::whole_file::WholeFile;
 
-/// Writes `path` and, beside it, the same name with `.mtl`.
+/// `path` and, beside it, the same name with `.mtl`.
 ///
 /// # Errors
 /// [`SceneError::Unwritable`].
-pub fn write_obj(scene: &Scene, path: &Path) -> Result<(), SceneError> {
+pub(super) fn files(scene: &Scene, path: &Path) -> Result<Vec<WholeFile>, SceneError> {
     let mtl = path.with_extension("mtl");
     let no_name = || unwritable(path)(std::io::Error::other("this is no name for a file"));
     let mtl_name = mtl.file_name().and_then(|name| name.to_str()).ok_or_else(no_name)?;
     let names = material_names(scene);
-    write_whole(&mtl, |file| {
+    let materials = whole_file(&mtl, |file| {
         writeln!(file, "# Materials of {}, written by umbra", scene.name)?;
         scene.materials.iter().zip(&names).try_for_each(|(m, name)| write_material(file, m, name))
     })?;
-    write_whole(path, |file| {
+    let geometry = whole_file(path, |file| {
         writeln!(file, "# {}, written by umbra", scene.name)?;
         writeln!(file, "mtllib {mtl_name}")?;
         write_geometry(file, scene, &names)
-    })
+    })?;
+    Ok(vec![materials, geometry])
 }
 
 fn write_geometry(file: &mut impl Write, scene: &Scene, names: &[String]) -> std::io::Result<()> {

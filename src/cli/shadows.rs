@@ -1,0 +1,160 @@
+//! What stands before the engine, as the command line names it.
+
+use std::fmt;
+use std::str::FromStr;
+
+use clap::Args;
+
+use super::failure::{Failure, say};
+use super::numbers::{finite, whole};
+use super::options::{EngineOptions, MOST_DEPTH};
+use crate::occlusion::{Backend, Occlusion};
+use crate::render::Order;
+use crate::scene::Scene;
+use crate::shadow::{
+    Auto, Combination, CombinationError, Method, MethodError, Plan, Prepared, Retest, SelfShadow,
+    VerdictKind, prepare,
+};
+
+/// What stands before the engine.
+#[derive(Args)]
+pub(super) struct ShadowOptions {
+    #[arg(long, value_name = "METHOD", default_value_t, help = shadows_help())]
+    shadows: Choice,
+    /// What keeps a shadow ray from meeting the triangle that it starts on
+    #[arg(long, value_enum, default_value_t)]
+    self_shadow: SelfShadow,
+    /// Whether a traversal tests again what was tested from memory
+    #[arg(long, value_enum, default_value_t)]
+    retest: Retest,
+    /// Forgets what is remembered at the beginning of each scanline (orders by scanline)
+    #[arg(long)]
+    reset_scanlines: bool,
+    /// Bounces down to which a cache tree has nodes of its own
+    #[arg(long, value_name = "N", default_value_t = Plan::from(Method::CacheTree).tree_depth, value_parser = whole(0..=MOST_DEPTH))]
+    tree_depth: u8,
+    /// For cache-tree-tolerance: how far apart rays may start, in diagonals of the scene, and point, in
+    /// half turns
+    #[arg(long, value_name = "SHARE", default_value_t = Plan::from(Method::CacheTree).tolerance, value_parser = finite::<f32>)]
+    tolerance: f32,
+}
+
+/// Names every method.
+fn shadows_help() -> String {
+    format!(
+        "What stands before the engine: auto, which asks what turns out to be cheapest, light by light (over embree: shaft); or {}",
+        Combination::names()
+    )
+}
+
+/// A shadow method, or the program's choice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Choice {
+    #[default]
+    Auto,
+    Given(Combination),
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Auto => f.write_str("auto"),
+            Self::Given(combination) => combination.fmt(f),
+        }
+    }
+}
+
+impl FromStr for Choice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "auto" => Ok(Self::Auto),
+            _ if names_auto(text) => Err(format!("auto stands alone; {}", shadows_to_give())),
+            _ => text.parse().map(Self::Given).map_err(|error: CombinationError| {
+                error.to_string().replace(&Combination::names(), &shadows_to_give())
+            }),
+        }
+    }
+}
+
+/// What `--shadows` takes.
+fn shadows_to_give() -> String {
+    Combination::names().replacen("give ", "give auto; or ", 1)
+}
+
+/// Whether the choice is left to the program, which is no method to go with others or to compare.
+fn names_auto(text: &str) -> bool {
+    text.split('+').any(|part| part.trim() == "auto")
+}
+
+/// A method that is compared.
+pub(super) fn parse_method(text: &str) -> Result<Combination, String> {
+    if names_auto(text) {
+        let names = Combination::names();
+        return Err(format!("auto chooses among the methods that are compared; {names}"));
+    }
+    text.parse().map_err(|error: CombinationError| error.to_string())
+}
+
+impl ShadowOptions {
+    /// Refuses what would change nothing.
+    pub fn check(&self, backend: Backend, order: Order) -> Result<(), Failure> {
+        if self.reset_scanlines && order.batches() {
+            return Err(Failure::Input(
+                "--reset-scanlines: tiles have no scanlines; give --order scanline or serpentine"
+                    .to_owned(),
+            ));
+        }
+        if self.retest != Retest::default() && backend == Backend::Embree {
+            return Err(Failure::Input(
+                "--retest: Embree tests again what it likes; leave it out, or give another engine"
+                    .to_owned(),
+            ));
+        }
+        Ok(())
+    }
+
+    /// What was asked for, as it is written.
+    pub fn name(&self) -> String {
+        self.shadows.to_string()
+    }
+
+    /// Makes it ready for a scene and a backend with this test, within a memory limit, for about as many queries as
+    /// are expected.
+    pub fn prepare<'a>(
+        &self,
+        scene: &'a Scene,
+        backend: &'a dyn Occlusion,
+        engine: &EngineOptions,
+        expected: impl FnOnce() -> u64,
+    ) -> Result<Box<dyn Prepared + 'a>, MethodError> {
+        // Embree has no exact test, so nobody but Embree gives its bits, and there is nothing to choose among. Shafts answer
+        // all rays to lights, exactly, and in less time than Embree's single rays.
+        let embree = engine.backend == Backend::Embree && self.self_shadow == SelfShadow::Offset;
+        let given = match self.shadows {
+            Choice::Given(combination) => Some(combination),
+            Choice::Auto if embree => {
+                say!(
+                    "umbra: over embree, auto is shaft: exact; --shadows trace has Embree's own answers"
+                );
+                Some(VerdictKind::Shaft.into())
+            }
+            Choice::Auto => None,
+        };
+        let plan = Plan {
+            budget: engine.memory,
+            self_shadow: self.self_shadow,
+            retest: self.retest,
+            reset_scanlines: self.reset_scanlines,
+            tree_depth: self.tree_depth,
+            tolerance: self.tolerance,
+            ..given.unwrap_or_default().into()
+        };
+        if given.is_some() {
+            return prepare(plan, scene, backend);
+        }
+        let auto = Auto::new(plan, engine.test(), scene, backend)?;
+        Ok(Box::new(auto.expecting(expected())))
+    }
+}

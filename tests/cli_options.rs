@@ -1,0 +1,56 @@
+//! Options on the command line: numbers that are none, and options that would change nothing.
+
+mod common;
+
+use std::fs;
+
+use common::command::{TRIANGLE, refused, run, said};
+use tempfile::TempDir;
+
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("triangle.obj"), TRIANGLE).unwrap();
+    fs::write(folder.path().join("rays.csv"), "1,1,1,1,1,-1\n").unwrap();
+    folder
+}
+
+#[test]
+fn a_negative_number_is_a_value_of_its_option() {
+    let folder = folder();
+    for (line, told) in [
+        ("render triangle.obj -o new.png --samples -1", ["--samples", "1 to 64"]),
+        ("render triangle.obj -o new.png --exposure -0.5", ["--exposure", "above 0"]),
+        ("compare triangle.obj --show -1", ["--show", "at least 0"]),
+        ("tradeoff triangle.obj --repetitions -2", ["--repetitions", "at least 1"]),
+        ("paper --every -9", ["--every", "at least 1"]),
+        ("certify --queries -5", ["--queries", "at least 1"]),
+        ("certify --seconds inf", ["--seconds", "a whole number of at least 1"]),
+        ("scene drum -o new.obj --tessellation -1", ["-1", "0.01 and 100"]),
+    ] {
+        refused(folder.path(), line, &told);
+        assert!(!said(&run(folder.path(), line)).contains("tip:"), "{line}");
+    }
+}
+
+#[test]
+fn options_that_would_change_nothing_are_refused() {
+    for (arguments, told) in [
+        ("--backend bvh2 --grid 8,8,8", ["--grid", "grid"]),
+        ("--backend cwbvh --uniform", ["--uniform", "grid"]),
+        ("--backend brute --lazy", ["--lazy", "grid"]),
+        ("--backend embree --shadows woo --retest not-cell", ["--retest", "another engine"]),
+        ("--reset-scanlines", ["--reset-scanlines", "--order scanline or serpentine"]),
+        ("--reset-scanlines --order tiles", ["--reset-scanlines", "tiles"]),
+    ] {
+        refused(folder().path(), &format!("render triangle.obj -o out.png {arguments}"), &told);
+    }
+    let folder = folder();
+    let line = "query triangle.obj --rays rays.csv -o out.csv --backend bvh2 --uniform";
+    refused(folder.path(), line, &["--uniform", "grid"]);
+    let line = "paper --quick --backends bvh2,cwbvh --uniform";
+    refused(folder.path(), line, &["--uniform", "grid"]);
+    if cfg!(feature = "embree") {
+        let line = "compare drum --size 8x6 --backends grid --embree-variants all";
+        refused(folder.path(), line, &["--embree-variants", "embree"]);
+    }
+}
