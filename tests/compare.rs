@@ -423,7 +423,7 @@ fn bad_input_is_told_in_one_line() {
         &["object-cache and woo are both memories"],
     );
     compare_refused("--size 0x3", &["size 0x3"]);
-    compare_refused("--threads 0", &["--threads 0"]);
+    compare_refused("--threads 0", &["--threads", "from 1 to 1024"]);
     compare_refused("--difference roof.gif", &["roof.gif", ".png or .exr"]);
     compare_refused("--list roof.obj", &["cannot write roof.obj"]);
     compare_refused("--stats no/such/folder.json", &["no folder"]);
