@@ -20,7 +20,7 @@ pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
         .map_err(|Unwritable { path, reason }| SceneError::Unwritable { path, reason })
 }
 
-/// The files of [`write`], whole but not in their places yet.
+/// The files of [`write()`], whole but not in their places yet.
 ///
 /// # Errors
 /// [`SceneError::Unwritable`], also for any other name.
