@@ -40,11 +40,11 @@ impl Budget {
         Self { backend, ..Self::new(bytes) }
     }
 
-    /// What a user may do so that so many more bytes fit.
+    /// What a user may do so that so many more bytes fit: no more than a try, as others may grow into the same room.
     #[must_use]
     pub fn advice(&self, missing: u64) -> String {
         let wanted = self.backend + (self.all - self.left().min(self.all)) + missing;
-        format!("--memory {}M or more has room", wanted.div_ceil(1 << 20))
+        format!("try --memory {}M or more", wanted.div_ceil(1 << 20))
     }
 
     /// Bytes left.
@@ -98,6 +98,6 @@ mod tests {
     fn the_advice_counts_what_was_taken_and_what_is_missing() {
         let budget = Budget::new(10 << 20);
         assert!(budget.take(6 << 20) && !budget.take(7 << 20));
-        assert_eq!(budget.advice(7 << 20), "--memory 13M or more has room");
+        assert_eq!(budget.advice(7 << 20), "try --memory 13M or more");
     }
 }
