@@ -4,6 +4,18 @@
 //! linearly. So a box is met iff six inequalities, each linear in `t`, hold at a common `t`: exact for
 //! this convex hull, and as cheap as a ray. Towards a direction, the box B moves along it.
 //!
+//! **Rounding.** With u = 2⁻²⁴ and M the largest coordinate that enters (of origins, light and the centre that boxes are relative to; towards a
+//! direction of all triangles too, as rays have no end there), in units of way along an axis:
+//!
+//! | what | u·M |
+//! | --- | --- |
+//! | a box of origins, moved to the centre and back | 3 |
+//! | the direction of a ray, L − P, and of a side, B − L | 2 |
+//! | a box's plane less the side's, its inverse slope, their product: 3u of at most 2 M | 6 |
+//! | the pad itself, added to sides | 2 |
+//!
+//! Both sides of a comparison err, each by its own plane, and each plane is moved by [`PAD`]: 16.
+//!
 //! Haines, Wallace: Shaft Culling for Efficient Ray-Traced Radiosity. Eurographics Workshop on Rendering 1991.
 
 use glam::Vec3;

@@ -113,9 +113,9 @@ impl Walker {
             self.know(index, ground);
             let found = self.shafts[index].meets::<L>(node);
             if index < PACKETS {
-                self.share::<L>(step, &found, node, ground, around, tally);
+                self.send_part::<L>(step, &found, node, ground, around, tally);
             } else {
-                self.part::<L>(step, &found, node, ground, around, tally);
+                self.send_packet::<L>(step, &found, node, ground, around, tally);
             }
         }
         true
@@ -158,7 +158,7 @@ impl Walker {
     /// Sends a part to the boxes of a node that its shaft meets, or its halves back to the node, if the part
     /// is wider than most of them.
     #[inline(always)]
-    fn share<L: Lanes>(
+    fn send_part<L: Lanes>(
         &mut self,
         step: Step,
         found: &Met,
@@ -188,7 +188,7 @@ impl Walker {
 
     /// Sends the rays of a packet to the boxes of a node that they meet; alone where they are few.
     #[inline(always)]
-    fn part<L: Lanes>(
+    fn send_packet<L: Lanes>(
         &mut self,
         step: Step,
         found: &Met,
