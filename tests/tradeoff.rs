@@ -278,8 +278,8 @@ fn bad_arguments_are_refused() {
     let refused = |arguments: &str, told: &[&str]| {
         refused(folder.path(), &format!("tradeoff needles.toml {arguments}"), told);
     };
-    refused("--repetitions 0", &["repetitions 0", "at least 1"]);
-    refused("--threads 0", &["--threads 0", "1 to 1024"]);
+    refused("--repetitions 0", &["--repetitions", "at least 1"]);
+    refused("--threads 0", &["--threads", "1 to 1024"]);
     refused("--size 0x10", &["0x10", "at least 1"]);
     refused(
         "--backends embree --tests exact",
