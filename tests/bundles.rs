@@ -3,32 +3,15 @@
 mod common;
 
 use common::Random;
+use common::lit::{point, scene, sun};
 use glam::{DVec3, Vec3, vec3};
 use umbra::geometry::{Ray, Triangle};
 use umbra::occlusion::{Backend, BuildOptions, Tally, Test, build};
-use umbra::scene::{Draft, DraftTriangle, Light, Scene};
+use umbra::scene::{Light, Scene};
 use umbra::shadow::{Answer, Combination, Path, ShadowQuery, VerdictKind, prepare};
 
 /// Worlds that are tried: some, and those of some thousands in which versions before lost a blocker.
 const WORLDS: [std::ops::Range<u64>; 3] = [0..40, 1226..1227, 2969..2970];
-
-fn point(position: Vec3) -> Light {
-    Light::Point { position: position.as_dvec3(), intensity: Vec3::ONE }
-}
-
-fn sun(direction: Vec3) -> Light {
-    Light::Directional { direction: direction.as_dvec3(), irradiance: Vec3::ONE }
-}
-
-fn scene(mesh: &[Triangle], lights: Vec<Light>) -> Scene {
-    let triangle = |corners: &Triangle| DraftTriangle {
-        corners: corners.map(|corner| corner.as_dvec3()),
-        normals: [Vec3::ZERO; 3],
-        material: 0,
-    };
-    let triangles = mesh.iter().map(triangle).collect();
-    Draft { triangles, lights, ..Draft::default() }.finish().unwrap()
-}
 
 /// Asks about each light and compares with exact arithmetic, triangle by triangle. How many are lit and blocked.
 fn check(

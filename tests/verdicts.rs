@@ -4,6 +4,7 @@ mod common;
 #[path = "common/rooms.rs"]
 mod rooms;
 
+use common::lit::{point, scene, sun};
 use common::{REAL_SCENES, Random, real_scenes, soup, sphere};
 use glam::{Vec3, vec3};
 use umbra::exact::{Verdict, oracle::verdict_of_scene};
@@ -15,24 +16,6 @@ use umbra::shadow::{
     Answer, Combination, Method, MethodError, Outcome, Path, Plan, SelfShadow, Settled,
     ShadowQuery, VerdictKind, prepare,
 };
-
-fn point(position: Vec3) -> Light {
-    Light::Point { position: position.as_dvec3(), intensity: Vec3::ONE }
-}
-
-fn sun(direction: Vec3) -> Light {
-    Light::Directional { direction: direction.as_dvec3(), irradiance: Vec3::ONE }
-}
-
-fn scene(mesh: &[Triangle], lights: Vec<Light>) -> Scene {
-    let triangle = |corners: &Triangle| DraftTriangle {
-        corners: corners.map(|corner| corner.as_dvec3()),
-        normals: [Vec3::ZERO; 3],
-        material: 0,
-    };
-    let triangles = mesh.iter().map(triangle).collect();
-    Draft { triangles, lights, ..Draft::default() }.finish().unwrap()
-}
 
 /// Every backend, with the exact test where it has one.
 fn backends(scene: &Scene) -> Vec<(Backend, Box<dyn Occlusion>)> {

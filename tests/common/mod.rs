@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
 pub mod command;
+pub mod lit;
 
 use glam::Vec3;
 use umbra::geometry::{Ray, Triangle};
