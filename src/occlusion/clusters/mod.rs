@@ -120,11 +120,6 @@ impl Clusters {
         self.typical_extent
     }
 
-    /// The largest coordinate of all boxes, in magnitude; 0 without triangles.
-    pub(crate) fn farthest(&self) -> f32 {
-        self.nodes.first().map_or(0.0, Node::farthest)
-    }
-
     /// Bytes held.
     #[must_use]
     pub fn memory(&self) -> usize {

@@ -69,12 +69,6 @@ impl Node {
         self.children[slot] & !CLUSTER
     }
 
-    /// The largest coordinate of its boxes, in magnitude; 0 if none is used.
-    pub fn farthest(&self) -> f32 {
-        let sides = self.low.iter().chain(&self.high).flatten();
-        sides.filter(|side| side.is_finite()).fold(0.0, |most: f32, side| most.max(side.abs()))
-    }
-
     /// Of its clusters, the sum of the longest sides of the boxes.
     pub fn sum_of_cluster_extents(&self) -> f64 {
         let clusters = (0..WIDTH).filter(|&slot| self.children[slot] & CLUSTER != 0);

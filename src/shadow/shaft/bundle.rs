@@ -5,10 +5,10 @@ use glam::Vec3;
 use super::cast::Boxes;
 use super::columns::{Columns, Row, around};
 use super::planes::Ground;
+use super::source::Source;
 use super::view::{Perspective, View};
-use crate::geometry::Ray;
-use crate::geometry::lanes::{Lanes, Sixteen, splat, sub};
-use crate::scene::Light;
+use crate::geometry::lanes::{Lanes, Sixteen};
+use crate::geometry::{Ray, Triangles};
 use crate::shadow::ShadowQuery;
 
 /// A bundle whose packets are on average larger than this part of it is not kept together by halving it.
@@ -31,45 +31,6 @@ const _: () = assert!(PACKETS == PACKET);
 
 /// Queries of a bundle.
 pub(super) const BUNDLE: usize = PACKET * PACKETS;
-
-/// Where a light is, in the bits that shadow rays have.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Source {
-    Point(Vec3),
-    Direction(Vec3),
-}
-
-impl Source {
-    pub fn new(light: &Light) -> Self {
-        match light {
-            Light::Point { position, .. } | Light::Spot { position, .. } => {
-                Self::Point(position.as_vec3())
-            }
-            Light::Directional { direction, .. } => Self::Direction(direction.as_vec3()),
-        }
-    }
-
-    /// Which of the rays are rays to the light, bit for bit: a bit each. Rays as [`Lanes::rays`] gives them.
-    #[inline(always)]
-    pub fn sends<L: Lanes>(&self, rays: &[L; 7]) -> u32 {
-        let [ox, oy, oz, dx, dy, dz, end] = *rays;
-        // What is compared with the direction, what must be finite, and the end.
-        let (expected, finite, last) = match *self {
-            Self::Point(light) => {
-                let light = splat::<L>(light);
-                (sub(light, [ox, oy, oz]), [dx, dy, dz], 1.0)
-            }
-            Self::Direction(direction) => (splat::<L>(direction), [ox, oy, oz], f32::INFINITY),
-        };
-        let mut others = L::not_equal(end, L::splat(last));
-        let mut sound = L::less_equal(end, end);
-        for (axis, direction) in [dx, dy, dz].into_iter().enumerate() {
-            others = L::or(others, L::not_equal(direction, expected[axis]));
-            sound = L::and(sound, L::less_equal(finite[axis].abs(), L::splat(f32::MAX)));
-        }
-        L::bits(sound) & !L::bits(others)
-    }
-}
 
 /// Up to a bundle of queries, in an order.
 #[derive(Clone, Copy)]
@@ -190,14 +151,12 @@ impl Bundle {
 
     /// Takes over queries; those that are not rays to this light are not asked. Gives the ground that they are on; `None`
     /// if none is asked, or if coordinates are so large or small that products of them could over- or underflow.
-    ///
-    /// `farthest` is the largest coordinate of all triangles.
     #[inline(always)]
     pub fn fill<L: Lanes>(
         &mut self,
         source: &Source,
         queries: &Chosen<'_>,
-        farthest: f32,
+        triangles: &Triangles,
     ) -> Option<Ground> {
         let packets = queries.count().div_ceil(PACKET);
         self.asked = [0; PACKETS];
@@ -262,8 +221,11 @@ impl Bundle {
         let centre = ground.centre;
         // The middle of ground that was made for a larger bundle may be farther away than all of this one; and rays that have no
         // end may come to boxes that are.
-        let reached = if matches!(source, Source::Direction(_)) { farthest } else { 0.0 };
-        self.largest = self.largest.max(centre.abs().max_element()).max(reached);
+        self.largest = self.largest.max(centre.abs().max_element());
+        if let Source::Direction(_) = source {
+            let all = triangles.bounds().unwrap_or_default();
+            self.largest = self.largest.max(all.largest_coordinate());
+        }
         for rows in &mut self.origins[..packets] {
             for (row, centre) in rows.iter_mut().zip(centre.to_array()) {
                 L::Sixteen::load(&row.0).sub(L::Sixteen::splat(centre)).store(&mut row.0);

@@ -122,9 +122,10 @@ mod tests {
     use glam::Vec3;
     use proptest::prelude::*;
 
-    use super::super::bundle::{PACKET, Source};
+    use super::super::bundle::PACKET;
     use super::super::columns::around;
     use super::super::planes::Ground;
+    use super::super::source::Source;
     use super::super::strategies::point;
     use super::*;
     use crate::geometry::Triangles;

@@ -4,7 +4,8 @@
 
 use glam::Vec3;
 
-use super::bundle::{BUNDLE, OriginBox, PACKET, PACKETS, Source, mean_extent};
+use super::bundle::{BUNDLE, OriginBox, PACKET, PACKETS, mean_extent};
+use super::source::Source;
 use crate::geometry::Ray;
 use crate::geometry::lanes::{Lanes, LanesJob, Sixteen};
 use crate::occlusion::WIDTH;

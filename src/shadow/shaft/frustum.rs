@@ -20,7 +20,8 @@
 
 use glam::Vec3;
 
-use super::bundle::{OriginBox, Source};
+use super::bundle::OriginBox;
+use super::source::Source;
 use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
 use crate::occlusion::{Node, WIDTH};
@@ -72,18 +73,18 @@ impl Shaft {
         let pad = Vec3::splat(PAD * largest);
         let (low, high) = (centre + origins.low - pad, centre + origins.high + pad);
         let extent = (origins.high - origins.low).max_element();
-        let (upper, lower, rise, fall, end) = match *source {
-            Source::Point(light) => (light + pad, light - pad, high - light, low - light, 1.0),
-            Source::Direction(direction) => (high, low, direction, direction, f32::INFINITY),
+        let (upper, lower, rise, fall) = match *source {
+            Source::Point(light) => (light + pad, light - pad, high - light, low - light),
+            Source::Direction(direction) => (high, low, direction, direction),
         };
         Self {
             upper: upper.to_array(),
             upper_inverse: rise.to_array().map(inverse),
             lower: lower.to_array(),
             lower_inverse: fall.to_array().map(inverse),
-            end,
+            end: source.end(),
             extent,
-            narrows: end == 1.0,
+            narrows: matches!(source, Source::Point(_)),
         }
     }
 

@@ -27,14 +27,16 @@ mod kept;
 mod order;
 mod planes;
 mod rays;
+mod source;
 mod view;
 mod walk;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use bundle::{BUNDLE, Chosen, PACKET, Places, Source};
+use bundle::{BUNDLE, Chosen, PACKET, Places};
 use columns::Read;
 use order::SortByDirection;
+use source::Source;
 use walk::{Around, Walker};
 
 use super::stock::Stock;
@@ -108,14 +110,12 @@ impl Shafts {
         tally: &mut Tally,
     ) {
         let source = &self.sources[light];
-        let farthest = clusters.farthest();
         let mut columns = std::mem::take(&mut walker.columns);
         let mut order = std::mem::take(&mut walker.order);
         self.arithmetic.run(Read { columns: &mut columns, source, queries });
         let mut walk = |places, leaves_spread| {
             let queries = Chosen::new(queries, &columns, places);
-            let triangles = &self.triangles;
-            let around = Around { clusters, triangles, queries, farthest, leaves_spread };
+            let around = Around { clusters, triangles: &self.triangles, queries, leaves_spread };
             if self.arithmetic.run(Walk { walker, source, around, tally }) {
                 walker.bundle.tell(places, settled);
             }

@@ -6,8 +6,9 @@
 //! on: so a narrow one is cut into as many cells as a square, squares of them in a row. A curve goes through each square, and
 //! ends where the next one begins. Queries in one cell keep their order.
 
-use super::bundle::{OriginBox, PACKET, Source};
+use super::bundle::{OriginBox, PACKET};
 use super::columns::{Columns, Row};
+use super::source::Source;
 use super::view::Perspective;
 use crate::geometry::along_hilbert;
 use crate::geometry::lanes::{Lanes, LanesJob, Sixteen};
@@ -168,7 +169,6 @@ const WHOLE: f32 = (1 << 23) as f32;
 mod tests {
     use glam::Vec3;
 
-    use super::super::bundle::Source;
     use super::super::columns::Read;
     use super::*;
     use crate::geometry::Ray;

@@ -22,7 +22,8 @@
 
 use glam::Vec3;
 
-use super::bundle::{OriginBox, Source};
+use super::bundle::OriginBox;
+use super::source::Source;
 use crate::geometry::lanes::{self, Lanes, Vector, largest, magnitudes};
 use crate::occlusion::{Cluster, WIDTH};
 

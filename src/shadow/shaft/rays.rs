@@ -1,9 +1,10 @@
 //! The rays of a packet, for tests of one box by all of them: where a shaft is wider than a box.
 
-use super::bundle::{PACKET, Source};
+use super::bundle::PACKET;
 use super::columns::Row;
 use super::frustum::{PAD, inverse};
 use super::planes::Ground;
+use super::source::Source;
 use crate::geometry::lanes::Sixteen;
 use crate::occlusion::Node;
 
@@ -28,10 +29,7 @@ impl PacketRays {
     #[inline(always)]
     pub fn set<S: Sixteen>(&mut self, ground: &Ground, origins: &[Row; 3], largest: f32) {
         self.pad = PADS * PAD * largest;
-        self.end = match ground.source {
-            Source::Point(_) => 1.0,
-            Source::Direction(_) => f32::INFINITY,
-        };
+        self.end = ground.source.end();
         for (axis, Row(row)) in origins.iter().enumerate() {
             let origin = S::load(row).add(S::splat(ground.centre[axis]));
             origin.store(&mut self.origins[axis]);

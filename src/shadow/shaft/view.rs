@@ -18,8 +18,9 @@
 
 use glam::Vec3;
 
-use super::bundle::{OriginBox, Source};
+use super::bundle::OriginBox;
 use super::columns::Row;
+use super::source::Source;
 use crate::geometry::lanes::Sixteen;
 
 /// Where ratios of coordinates are larger, a box serves better.

@@ -5,7 +5,7 @@
 //! apart, and its rays go on one by one. So rays that stay together share every step, and those that do not cost
 //! what they cost alone.
 
-use super::bundle::{Bundle, Chosen, PACKET, PACKETS, Source};
+use super::bundle::{Bundle, Chosen, PACKET, PACKETS};
 use super::cluster::Tests;
 use super::columns::Columns;
 use super::frustum::{Met, Shaft};
@@ -13,6 +13,7 @@ use super::kept::Kept;
 use super::order::Order;
 use super::planes::Ground;
 use super::rays::PacketRays;
+use super::source::Source;
 use crate::exact::Exact;
 use crate::geometry::Triangles;
 use crate::geometry::intersect::RayLanes;
@@ -54,8 +55,6 @@ pub(super) struct Around<'a> {
     pub clusters: &'a Clusters,
     pub triangles: &'a Triangles,
     pub queries: Chosen<'a>,
-    /// The largest coordinate of all triangles, in magnitude.
-    pub farthest: f32,
     /// Whether a bundle that does not stay together is passed on.
     pub leaves_spread: bool,
 }
@@ -84,9 +83,8 @@ impl Walker {
     /// Settles all queries to this light: those that stay open are lit. `false` if none is settled.
     #[inline(always)]
     pub fn walk<L: Lanes>(&mut self, source: &Source, around: &Around, tally: &mut Tally) -> bool {
-        let Some(ground) = &self.bundle.fill::<L>(source, &around.queries, around.farthest) else {
-            return false;
-        };
+        let Around { triangles, queries, .. } = around;
+        let Some(ground) = &self.bundle.fill::<L>(source, queries, triangles) else { return false };
         if around.leaves_spread && self.bundle.is_spread(around.clusters.typical_extent()) {
             return false;
         }
