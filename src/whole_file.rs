@@ -67,6 +67,22 @@ impl WholeFile {
         Ok(Self { path: path.to_owned(), content })
     }
 
+    /// A file with this content, not in its place yet.
+    ///
+    /// # Errors
+    /// If it cannot be begun, or its content not be written.
+    pub fn with(
+        path: &Path,
+        content: impl FnOnce(&mut Self) -> io::Result<()>,
+    ) -> Result<Self, Unwritable> {
+        let write = || {
+            let mut file = Self::create(path)?;
+            content(&mut file)?;
+            Ok(file)
+        };
+        write().map_err(|reason| Unwritable { path: path.to_owned(), reason })
+    }
+
     /// Something that is no file, such as standard output, by the name that messages give it.
     #[must_use]
     pub fn direct(name: impl Into<PathBuf>, writer: impl Write + Send + 'static) -> Self {
@@ -139,9 +155,9 @@ impl Write for WholeFile {
 /// # Errors
 /// What the system said; what was there before is untouched.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = WholeFile::create(path)?;
-    file.write_all(bytes)?;
-    finish_all(vec![file]).map_err(|unwritable| unwritable.reason)
+    WholeFile::with(path, |file| file.write_all(bytes))
+        .and_then(|file| finish_all(vec![file]))
+        .map_err(|unwritable| unwritable.reason)
 }
 
 /// How temporary names are made.

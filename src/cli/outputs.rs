@@ -22,12 +22,7 @@ impl Outputs {
 
     /// Writes a file that is not in its place yet.
     pub fn add(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-        let write = || {
-            let mut file = WholeFile::create(path)?;
-            file.write_all(bytes)?;
-            Ok(file)
-        };
-        self.push(write().map_err(|reason| Failure::unwritable(path, &reason))?);
+        self.push(WholeFile::with(path, |file| file.write_all(bytes))?);
         Ok(())
     }
 

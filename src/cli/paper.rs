@@ -19,7 +19,7 @@ use crate::measure::paper::{
 use crate::occlusion::{Backend, BuildOptions, GridOptions, Test};
 use crate::render::{MOST_SAMPLES, Progress};
 use crate::scene::builtin::NAMES;
-use crate::shadow::{Combination, CombinationError, Method, Plan, Retest, VerdictKind, VerdictSet};
+use crate::shadow::{CombinationError, Method, Plan, Retest, VerdictKind, VerdictSet};
 
 const DETAILS: &str = "\
 Everything runs in one thread; the pictures are the paper's unless a size is given. All methods render
@@ -215,9 +215,7 @@ impl Paper {
 fn parse_verdicts(text: &str) -> Result<VerdictSet, String> {
     let names = VerdictKind::ALL.map(VerdictKind::name).join(", ");
     let to_give = format!("give verdicts ({names}), joined by +");
-    text.parse().map_err(|error: CombinationError| {
-        error.to_string().replace(&Combination::names(), &to_give)
-    })
+    text.parse().map_err(|error: CombinationError| error.with_advice(&to_give))
 }
 
 /// Runs this very command again, under Valgrind.

@@ -71,9 +71,10 @@ impl FromStr for Choice {
         match text {
             "auto" => Ok(Self::Auto),
             _ if names_auto(text) => Err(format!("auto stands alone; {}", shadows_to_give())),
-            _ => text.parse().map(Self::Given).map_err(|error: CombinationError| {
-                error.to_string().replace(&Combination::names(), &shadows_to_give())
-            }),
+            _ => text
+                .parse()
+                .map(Self::Given)
+                .map_err(|error: CombinationError| error.with_advice(&shadows_to_give())),
         }
     }
 }

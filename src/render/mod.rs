@@ -3,8 +3,8 @@
 //! Work is cut into units (bands of rows, or tiles) whose number and content do not depend on the
 //! number of threads. Each unit has a worker of its own, with fresh memories; so picture and counters
 //! are the same for any number of threads, bit for bit; but if methods are chosen by the clock, or the memory
-//! does not hold all that they prepare, who answered a query is not. Within a unit, rays are followed generation by generation, and the shadow
-//! queries of a generation are asked light by light.
+//! does not hold all that they prepare, who answered a query is not. Within a unit, rays are followed
+//! generation by generation, and the shadow queries of a generation are asked light by light.
 
 mod answers;
 mod film;

@@ -1,4 +1,5 @@
-//! What a render counted; the same for every number of threads, unless methods are chosen by the clock or the memory does not hold all of them.
+//! What a render counted; the same for every number of threads, unless methods are chosen by the clock or the memory
+//! does not hold all of them.
 
 use serde::Serialize;
 

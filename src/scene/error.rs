@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::whole_file::Unwritable;
+
 /// Why there is no scene. Each message says what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
@@ -53,4 +55,10 @@ pub enum SceneError {
         /// The estimate and the limit.
         problem: String,
     },
+}
+
+impl From<Unwritable> for SceneError {
+    fn from(Unwritable { path, reason }: Unwritable) -> Self {
+        Self::Unwritable { path, reason }
+    }
 }

@@ -107,29 +107,43 @@ impl fmt::Display for Combination {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CombinationError {
     /// No method has this name.
-    #[error("there is no shadow method '{0}': {names}", names = Combination::names())]
     Unknown(String),
     /// A second answer would be the first.
-    #[error(
-        "{0} twice: it would pass on what it passed on before; {names}",
-        names = Combination::names()
-    )]
     Twice(VerdictKind),
     /// A query consults one memory.
-    #[error(
-        "{0} and {1} are both memories, and a query consults one; {names}",
-        names = Combination::names()
-    )]
     TwoMemories(Method, Method),
     /// Only verdicts are wanted.
-    #[error("{0} is no verdict; {names}", names = Combination::names())]
     NotAVerdict(Method),
     /// Nothing can be added to nothing.
-    #[error(
-        "trace is the backend alone, so nothing goes with it: leave out 'trace'; {names}",
-        names = Combination::names()
-    )]
     WithTrace,
+}
+
+impl CombinationError {
+    /// What is wrong, and what to give where that is not all that a combination may be.
+    #[must_use]
+    pub fn with_advice(&self, advice: &str) -> String {
+        match self {
+            Self::Unknown(name) => format!("there is no shadow method '{name}': {advice}"),
+            Self::Twice(kind) => {
+                format!("{kind} twice: it would pass on what it passed on before; {advice}")
+            }
+            Self::TwoMemories(first, second) => {
+                format!(
+                    "{first} and {second} are both memories, and a query consults one; {advice}"
+                )
+            }
+            Self::NotAVerdict(memory) => format!("{memory} is no verdict; {advice}"),
+            Self::WithTrace => format!(
+                "trace is the backend alone, so nothing goes with it: leave out 'trace'; {advice}"
+            ),
+        }
+    }
+}
+
+impl fmt::Display for CombinationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.with_advice(&Combination::names()))
+    }
 }
 
 impl FromStr for Combination {

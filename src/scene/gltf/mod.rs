@@ -147,16 +147,6 @@ impl Reader<'_> {
             None => root.materials.len(),
         };
         let count = indices.as_ref().map_or(positions.count, |indices| indices.count);
-        if mode(primitive)? == Mode::Triangles && !count.is_multiple_of(3) {
-            let note = format!(
-                "a primitive has {count} corners, not three for each triangle: the last {} are left out",
-                count % 3
-            );
-            // A mesh may be placed many times.
-            if !self.draft.notes.contains(&note) {
-                self.draft.notes.push(note);
-            }
-        }
         let vertex = |i| indices.as_ref().map_or(i, |indices| indices.index(i));
         for corners in corners_of(mode(primitive)?, count) {
             let corners = corners.map(vertex);
@@ -173,6 +163,12 @@ impl Reader<'_> {
                 normals: corners.map(normal),
                 material: material as u32,
             }));
+        }
+        if mode(primitive)? == Mode::Triangles && !count.is_multiple_of(3) {
+            self.note(&format!(
+                "a primitive has {count} corners, not three for each triangle: the last {} are left out",
+                count % 3
+            ));
         }
         Ok(())
     }

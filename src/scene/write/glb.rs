@@ -6,7 +6,7 @@ use std::{collections::HashMap, io, io::Write, path::Path};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
-use super::{Run, material_names, runs, unwritable, whole_file};
+use super::{Run, material_names, runs, unwritable};
 use crate::scene::{
     Camera, Light, Material, Scene, SceneError,
     material::{Extras, Surroundings},
@@ -71,7 +71,7 @@ pub(super) fn file(scene: &Scene, path: &Path) -> Result<WholeFile, SceneError> 
     // No chunk is longer than the whole.
     let length = u32::try_from(length)
         .map_err(|_| unwritable(path)(io::Error::other("a GLB holds no more than 4 GiB")))?;
-    whole_file(path, |file| {
+    let file = WholeFile::with(path, |file| {
         file.write_all(b"glTF")?;
         file.write_all(&2u32.to_le_bytes())?;
         file.write_all(&length.to_le_bytes())?;
@@ -81,7 +81,8 @@ pub(super) fn file(scene: &Scene, path: &Path) -> Result<WholeFile, SceneError> 
             file.write_all(bytes)?;
         }
         Ok(())
-    })
+    })?;
+    Ok(file)
 }
 
 /// The binary chunk and what the JSON says about it.

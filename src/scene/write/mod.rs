@@ -9,15 +9,14 @@ use std::{io, ops::Range, path::Path};
 use glam::Vec3;
 
 use super::{Scene, SceneError};
-use crate::whole_file::{Unwritable, WholeFile, finish_all};
+use crate::whole_file::{WholeFile, finish_all};
 
 /// Writes a scene as the end of the name says: `.obj` (with an `.mtl` beside it) or `.glb`.
 ///
 /// # Errors
 /// [`SceneError::Unwritable`], also for any other name; nothing is written then.
 pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
-    finish_all(files(scene, path)?)
-        .map_err(|Unwritable { path, reason }| SceneError::Unwritable { path, reason })
+    Ok(finish_all(files(scene, path)?)?)
 }
 
 /// The files of [`write()`], whole but not in their places yet.
@@ -35,19 +34,6 @@ pub fn files(scene: &Scene, path: &Path) -> Result<Vec<WholeFile>, SceneError> {
 
 fn unwritable(path: &Path) -> impl Fn(io::Error) -> SceneError {
     move |reason| SceneError::Unwritable { path: path.into(), reason }
-}
-
-/// A file with this content, not in its place yet.
-fn whole_file(
-    path: &Path,
-    content: impl FnOnce(&mut WholeFile) -> io::Result<()>,
-) -> Result<WholeFile, SceneError> {
-    let write = || {
-        let mut file = WholeFile::create(path)?;
-        content(&mut file)?;
-        Ok(file)
-    };
-    write().map_err(unwritable(path))
 }
 
 /// Triangles next to each other with one material, all smooth or all flat.

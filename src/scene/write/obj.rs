@@ -4,7 +4,7 @@ use std::{collections::HashMap, io::Write, path::Path};
 
 use glam::Vec3;
 
-use super::{material_names, runs, unwritable, whole_file};
+use super::{material_names, runs, unwritable};
 use crate::scene::{Material, Scene, SceneError};
 use crate::whole_file::WholeFile;
 
@@ -17,11 +17,11 @@ pub(super) fn files(scene: &Scene, path: &Path) -> Result<Vec<WholeFile>, SceneE
     let no_name = || unwritable(path)(std::io::Error::other("this is no name for a file"));
     let mtl_name = mtl.file_name().and_then(|name| name.to_str()).ok_or_else(no_name)?;
     let names = material_names(scene);
-    let materials = whole_file(&mtl, |file| {
+    let materials = WholeFile::with(&mtl, |file| {
         writeln!(file, "# Materials of {}, written by umbra", scene.name)?;
         scene.materials.iter().zip(&names).try_for_each(|(m, name)| write_material(file, m, name))
     })?;
-    let geometry = whole_file(path, |file| {
+    let geometry = WholeFile::with(path, |file| {
         writeln!(file, "# {}, written by umbra", scene.name)?;
         writeln!(file, "mtllib {mtl_name}")?;
         write_geometry(file, scene, &names)
