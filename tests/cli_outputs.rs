@@ -174,3 +174,16 @@ fn a_report_that_standard_output_does_not_take_is_a_failure() {
         assert!(!said(&output).contains("cannot") && !said(&output).contains("panicked"));
     }
 }
+
+#[test]
+fn a_dash_is_not_the_name_of_an_output() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "mesh.obj", TRIANGLE);
+    for line in [
+        "render mesh.obj -o a.png --size 8x6 --stats -",
+        "certify --queries 10 --stats -",
+        "tradeoff mesh.obj --quick --csv -",
+    ] {
+        refused(folder.path(), line, &["cannot write -", "give the name of a file"]);
+    }
+}

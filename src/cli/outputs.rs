@@ -93,6 +93,10 @@ fn check_writable(path: &Path) -> Result<(), Failure> {
     let folder = folder_of(&place);
     let refuse =
         |reason: String| Failure::Input(format!("cannot write {}: {reason}", path.display()));
+    if path == Path::new("-") {
+        let stands = "only rays and answers of `umbra query` go to standard streams by that name";
+        return Err(refuse(format!("{stands}; give the name of a file")));
+    }
     if !folder.is_dir() {
         return Err(refuse(format!("there is no folder {}; make it first", folder.display())));
     }

@@ -1,11 +1,13 @@
 //! A camera, lights and surroundings for files that have none. The scene's notes say what was chosen.
 
 mod emitters;
+mod room;
 
 use glam::{DVec3, Vec3};
 
 use super::{Camera, Light, Scene};
 use crate::geometry::Bounds;
+use room::Walls;
 
 /// Vertical field of view of a chosen camera, in degrees.
 const FIELD_OF_VIEW: f64 = 40.0;
@@ -21,19 +23,22 @@ const LEAST_SHARE: f64 = 1.0 / 300.0;
 const SUN: f32 = 3.0;
 
 /// Looks at the scene from the front, right and above, so that all of it is seen; into a room with
-/// one open side, from there.
+/// one open side, from there; at a closed room, from within.
 pub(super) fn add_camera(scene: &mut Scene, up: Option<DVec3>) {
     let bounds = scene.bounds();
     let up = up.unwrap_or(if is_flat(&bounds, DVec3::Z) { DVec3::Z } else { DVec3::Y });
-    let (from, what) = match open_side(scene, &bounds) {
-        Some(side) => (side, "looks into the open side"),
-        None => {
-            let front = if up.z.abs() > up.y.abs() { DVec3::NEG_Y } else { DVec3::Z };
-            let height = if is_flat(&bounds, up) { 0.65 } else { 0.35 };
-            (0.45 * up.cross(front) + height * up + 0.82 * front, "sees the whole scene")
-        }
+    let walls = Walls::of(scene);
+    let (camera, what) = if walls.close_a_room() {
+        (walls.corner_view(scene, up), "looks about the closed room from a corner")
+    } else if let Some(side) = walls.open_side() {
+        (fitted(scene, side, up), "looks into the open side")
+    } else {
+        let front = if up.z.abs() > up.y.abs() { DVec3::NEG_Y } else { DVec3::Z };
+        let height = if is_flat(&bounds, up) { 0.65 } else { 0.35 };
+        let from = 0.45 * up.cross(front) + height * up + 0.82 * front;
+        (fitted(scene, from, up), "sees the whole scene")
     };
-    scene.camera = fitted(scene, from, up);
+    scene.camera = camera;
     let axis = if up == DVec3::Z { ", with Z up," } else { "" };
     scene.notes.push(format!("no usable camera in the file: one{axis} that {what} was added"));
 }
@@ -75,50 +80,8 @@ fn fitted(scene: &Scene, from: DVec3, up: DVec3) -> Camera {
     camera
 }
 
-/// The one side of the box that has no wall while the other five have.
-fn open_side(scene: &Scene, bounds: &Bounds) -> Option<DVec3> {
-    let walls = walls(scene, bounds);
-    let mut open = None;
-    for (side, covered) in walls {
-        if covered < 0.1 {
-            if open.replace(side).is_some() {
-                return None;
-            }
-        } else if covered < 0.8 {
-            return None;
-        }
-    }
-    open
-}
-
-/// How much of each side of the box is covered by triangles that lie along it, as a share.
-fn walls(scene: &Scene, bounds: &Bounds) -> [(DVec3, f64); 6] {
-    // A wall lies within a twentieth of the extent, and is turned by less than about ten degrees.
-    const NEAR: f64 = 0.05;
-    const PARALLEL: f64 = 0.985;
-    let extent = bounds.extent().as_dvec3();
-    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-    let mut walls =
-        [0, 1, 2, 3, 4, 5].map(|i| (if i % 2 == 0 { axes[i / 2] } else { -axes[i / 2] }, 0.0));
-    for (id, _) in (0..).zip(scene.triangles.corners()) {
-        let corners = scene.triangles.get(id).map(|corner| corner.as_dvec3());
-        let area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-        for (side, covered) in &mut walls {
-            let seen = area.dot(*side).abs();
-            let depth = |corner: &DVec3| {
-                (0.5 - NEAR) * extent.dot(side.abs()) <= (*corner - bounds.centre()).dot(*side)
-            };
-            if seen > PARALLEL * area.length() && corners.iter().all(depth) {
-                let size = extent.x * extent.y * extent.z / extent.dot(side.abs());
-                *covered += seen / size;
-            }
-        }
-    }
-    walls
-}
-
 /// Lights in place of emissive surfaces, and a sun at the side of the camera where there are none or
-/// they are but sparks in a large scene.
+/// they are but sparks in a large scene; in a closed room, where no sun comes in, a lamp under the ceiling.
 pub(super) fn add_lights(scene: &mut Scene) {
     let found = emitters::lights(scene);
     let mut added = Vec::new();
@@ -129,7 +92,11 @@ pub(super) fn add_lights(scene: &mut Scene) {
         };
         added.push(format!("a point light before {all} emissive surfaces"));
     }
-    if found.share < LEAST_SHARE {
+    let room = Walls::of(scene);
+    if found.share < LEAST_SHARE && room.close_a_room() && room.hold(scene.camera.position) {
+        added.push("a point light under the ceiling".to_owned());
+        scene.lights.push(room.lamp(scene.camera.up, Vec3::splat(SUN)));
+    } else if found.share < LEAST_SHARE {
         added.push("a directional light".to_owned());
         let camera = &scene.camera;
         // Low enough for shadows to be seen.

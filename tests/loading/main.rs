@@ -3,6 +3,7 @@
 mod damaged_gltf;
 mod gltf;
 mod obj;
+mod sensible;
 mod toml;
 
 use std::{fs, path::PathBuf};
