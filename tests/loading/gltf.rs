@@ -325,3 +325,19 @@ fn corners_beyond_the_last_whole_triangle_are_noted() {
     assert_eq!(scene.triangles.len(), 1);
     assert!(scene.notes.iter().any(|note| note == told), "{:?}", scene.notes);
 }
+
+#[test]
+fn a_primitive_without_a_whole_triangle_is_noted() {
+    for mode in [4, 5, 6] {
+        let scene = loaded(|document| {
+            let few =
+                json!({ "bufferView": 1, "componentType": 5123, "count": 2, "type": "SCALAR" });
+            document["accessors"].as_array_mut().unwrap().push(few);
+            let bare = json!({ "attributes": { "POSITION": 0 }, "indices": 2, "mode": mode });
+            document["meshes"][0]["primitives"].as_array_mut().unwrap().push(bare);
+        });
+        let told = "a primitive has fewer than three corners: it is left out";
+        assert_eq!(scene.triangles.len(), 1);
+        assert!(scene.notes.iter().any(|note| note == told), "mode {mode}: {:?}", scene.notes);
+    }
+}

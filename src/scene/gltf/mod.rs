@@ -110,6 +110,8 @@ impl Reader<'_> {
         for primitive in &mesh.primitives {
             if nodes::triangle_count(root, primitive)? > 0 {
                 self.read_primitive(root, primitive, &placement)?;
+            } else if has_triangles(mode(primitive)?) {
+                self.note("a primitive has fewer than three corners: it is left out");
             }
         }
         Ok(())
