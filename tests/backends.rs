@@ -218,3 +218,44 @@ fn transparent_triangles_are_found_once_each_and_block_nothing() {
     }
     assert!(most > 5, "some rays pass many transparent triangles");
 }
+
+/// Triangles that lie in each other like shells, the smallest first: trees over them are chains, hundreds of levels deep.
+fn shells(count: usize, ratio: f32, copies: usize) -> Vec<Triangle> {
+    let mut random = Random(11);
+    let mut mesh = Vec::new();
+    for shell in (0..count).rev() {
+        let size = ratio.powi(shell as i32);
+        for _ in 0..copies {
+            let side = |bit: usize| if bit == 0 { -size } else { size };
+            let corner = Vec3::from_array(std::array::from_fn(|_| side(random.below(2))));
+            mesh.push([corner, -corner, random.in_cube(size)]);
+        }
+    }
+    mesh
+}
+
+#[test]
+fn trees_of_any_depth_lose_nothing() {
+    let deep = [(36, 0.8, 16), (60, 0.9, 20), (900, 0.99, 20)];
+    for mesh in deep.map(|(count, ratio, copies)| shells(count, ratio, copies)) {
+        let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());
+        let options = BuildOptions::default();
+        let brute = build(Backend::Brute, Test::Exact, &triangles, &options).unwrap();
+        let others = backends(&triangles, Test::Exact, &options);
+        let mut random = Random(12);
+        for i in 0..3000 {
+            // Through one of them, and not far beyond.
+            let [a, b, c] = mesh[random.below(mesh.len())];
+            let through = a + random.unit() * (b - a + random.unit() * (c - b));
+            let normal = (b - a).cross(c - a).normalize() * (b - a).length();
+            let step = normal * random.unit().powi(6);
+            let ray = Ray::between(through - step, through + step);
+            let tally = &mut Tally::default();
+            let expected = brute.occluded(&ray, tally);
+            for (backend, other) in OWN.iter().zip(&others) {
+                let what = format!("{backend} on {} triangles, ray {i}: {ray:?}", mesh.len());
+                assert_eq!(other.occluded(&ray, tally), expected, "{what}");
+            }
+        }
+    }
+}

@@ -28,9 +28,24 @@ impl Bvh2 {
     pub fn new(triangles: &Triangles) -> Self {
         let space = CullingSpace::new(triangles);
         let boxes = space.boxes(triangles);
-        let tree = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
+        let mut tree = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
+        // obvhs does not know it any more after reinsertion, and a stack that is too small forgets.
+        tree.max_depth = tree.max_depth.max(levels(&tree) + 1);
         Self { tree, space }
     }
+}
+
+/// Nodes from the root to the deepest, both included.
+fn levels(tree: &obvhs::bvh2::Bvh2) -> usize {
+    let (mut deepest, mut rest) = (0, vec![(0, 1)]);
+    while let Some((number, level)) = rest.pop() {
+        let Some(node) = tree.nodes.get(number as usize) else { continue };
+        deepest = deepest.max(level);
+        if !node.is_leaf() {
+            rest.extend([(node.first_index, level + 1), (node.first_index + 1, level + 1)]);
+        }
+    }
+    deepest
 }
 
 impl Walk for Bvh2 {

@@ -2,7 +2,8 @@
 //!
 //! As with `bvh2`, obvhs culls in a space of ours with a ray of ours, and the triangle test is ours:
 //! its node test is blind within 1e-4 of the ray's origin and clamps small directions, which loses
-//! blockers on rays as shadow queries have them; the culling ray keeps clear of both.
+//! blockers on rays as shadow queries have them; the culling ray keeps clear of both. Its stack for 32 levels
+//! forgets what does not fit, and loses what lies there; deeper trees, as triangles make that lie in each other like shells, get one of ours.
 //!
 //! Ylitie, Karras, Laine: Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs.
 //! High Performance Graphics 2017.
@@ -13,9 +14,10 @@ use glam::UVec2;
 use obvhs::BvhBuildParams;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh;
+use obvhs::faststack::{FastStack, StackStack};
 
 use super::brute::visit_all;
-use super::culling_space::{CullingSpace, Passage};
+use super::culling_space::{Culled, CullingSpace, Passage};
 use super::{Cell, Visit, Walk};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
@@ -23,10 +25,25 @@ use crate::geometry::{Ray, TriangleId, Triangles};
 /// Triangles that one node may hold: 8 leaves of up to 3.
 const NODE_TRIANGLES: usize = 24;
 
+/// What a stack without memory of its own holds; its last place is overwritten once it is full.
+const STACK: usize = 32;
+
 /// A compressed 8-wide bounding volume hierarchy.
 pub struct Cwbvh {
     tree: CwBvh,
     space: CullingSpace,
+    /// Nodes from the root to the deepest, both included: a walk puts at most one thing on its stack for each.
+    levels: usize,
+}
+
+/// A walk, for the macro of obvhs: its own type with another stack.
+struct State<S> {
+    stack: S,
+    current_group: UVec2,
+    primitive_group: UVec2,
+    oct_inv4: u32,
+    primitive_id: u32,
+    hitmask: u32,
 }
 
 impl Cwbvh {
@@ -36,21 +53,28 @@ impl Cwbvh {
         let space = CullingSpace::new(triangles);
         let boxes = space.boxes(triangles);
         let tree = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
-        Self { tree, space }
+        let levels = levels(&tree);
+        Self { tree, space, levels }
     }
-}
 
-impl Walk for Cwbvh {
     #[inline(always)]
-    fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
-        let culled = match self.space.passage(ray) {
-            Passage::Outside => return,
-            Passage::Everything => return visit_all(&self.tree.primitive_indices, 8, visitor),
-            Passage::Through(culled) => culled,
-        };
+    fn walk_with<V: Visit + ?Sized>(
+        &self,
+        stack: impl FastStack<UVec2>,
+        culled: &Culled,
+        visitor: &mut V,
+    ) {
         let order = &self.tree.primitive_indices[..];
         let mut ray = culled.ray;
-        let mut state = self.tree.new_traversal(ray.direction);
+        let start = self.tree.new_traversal(ray.direction);
+        let mut state = State {
+            stack,
+            current_group: start.current_group,
+            primitive_group: start.primitive_group,
+            oct_inv4: start.oct_inv4,
+            primitive_id: 0,
+            hitmask: 0,
+        };
         let mut node;
         'walk: {
             obvhs::traverse!(self.tree, node, state, node.intersect_ray(&ray, state.oct_inv4), {
@@ -74,6 +98,34 @@ impl Walk for Cwbvh {
                 }
                 ray.tmax = ray.tmax.min(culled.limit(visitor.end()));
             });
+        }
+    }
+}
+
+/// Nodes from the root to the deepest, both included.
+fn levels(tree: &CwBvh) -> usize {
+    let (mut deepest, mut rest) = (0, vec![(0, 1)]);
+    while let Some((number, level)) = rest.pop() {
+        let Some(node) = tree.nodes.get(number as usize) else { continue };
+        deepest = deepest.max(level);
+        let children = node.child_base_idx..node.child_base_idx + node.imask.count_ones();
+        rest.extend(children.map(|child| (child, level + 1)));
+    }
+    deepest
+}
+
+impl Walk for Cwbvh {
+    #[inline(always)]
+    fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
+        let culled = match self.space.passage(ray) {
+            Passage::Outside => return,
+            Passage::Everything => return visit_all(&self.tree.primitive_indices, 8, visitor),
+            Passage::Through(culled) => culled,
+        };
+        if self.levels < STACK {
+            self.walk_with(StackStack::<UVec2, STACK>::default(), &culled, visitor);
+        } else {
+            self.walk_with(Vec::with_capacity(self.levels), &culled, visitor);
         }
     }
 
