@@ -6,16 +6,22 @@
 //! grid for `trace`, of clusters for `shaft` and `light-buffer`, of both for `auto`, of Embree's BVH for Embree. A
 //! contender that takes too long for one point is left out of those after it, and a scene that memory does not hold
 //! ends its curve; both are said.
+//!
+//! `sharing` is no curve: it takes the time of each unit of work by itself, and says how long so many threads would take for all of them
+//! together, if they did not slow each other down.
 
 #[path = "../common/mod.rs"]
 mod common;
 mod contest;
 mod curves;
 mod figures;
+mod sharing;
 
 use std::path::Path;
 
-const USAGE: &str = "cargo bench --bench growth -- FOLDER ROUNDS CURVE…, like docs 3 triangles lights samples threads";
+const USAGE: &str = "cargo bench --bench growth -- FOLDER ROUNDS CURVE…, like docs 3 triangles lights samples threads sharing";
+
+const SHARING: &str = "sharing";
 
 fn main() {
     let arguments: Vec<String> =
@@ -28,12 +34,16 @@ fn main() {
     let (folder, rounds) = (Path::new(folder), rounds.parse().expect(USAGE));
     assert!(folder.is_dir(), "there is no folder {}: {USAGE}", folder.display());
     for name in wanted {
-        assert!(curves::ALL.iter().any(|curve| curve.name == name), "no curve {name}: {USAGE}");
+        let is_known = name == SHARING || curves::ALL.iter().any(|curve| curve.name == name);
+        assert!(is_known, "no curve {name}: {USAGE}");
     }
     for curve in &curves::ALL {
         if wanted.is_empty() || wanted.iter().any(|name| name == curve.name) {
             let points = (curve.measure)(rounds);
             figures::write(folder, curve, &points).expect("the folder can be written");
         }
+    }
+    if wanted.iter().any(|name| name == SHARING) {
+        sharing::print(rounds);
     }
 }

@@ -1,7 +1,10 @@
-//! How many shadow queries a picture will ask, before it is rendered: those of a small picture of the same view, times how
-//! much smaller it is. Nobody answers those; they count as blocked, and so cost no shading.
+//! What rays a picture will take, before it is rendered: those of a small picture of the same view. Nobody answers its shadow
+//! queries; they count as blocked, and so cost no shading.
 
-use super::{Progress, Settings, whitted::Unit};
+use rayon::prelude::*;
+
+use super::order::Place;
+use super::{Progress, RayCounts, Settings, whitted::Unit};
 use crate::occlusion::Occlusion;
 use crate::scene::Scene;
 use crate::shadow::{Answer, Prepared, ShadowQuery, ShadowTally, Shadows};
@@ -12,27 +15,51 @@ const STRIDE: u32 = 32;
 /// About how many shadow queries a render will ask.
 #[must_use]
 pub fn forecast(scene: &Scene, backend: &dyn Occlusion, settings: &Settings) -> u64 {
+    let small = Small::of(scene, backend, settings, STRIDE);
+    let asked: u64 = small.rays.iter().map(|rays| rays.shadow).sum();
     let Settings { width, height, samples, .. } = *settings;
-    let small = Settings {
-        width: width.div_ceil(STRIDE),
-        height: height.div_ceil(STRIDE),
-        samples: 1,
-        mask: false,
-        answers: None,
-        record: false,
-        ..*settings
-    };
-    let asked: u64 = small
-        .units()
-        .iter()
-        .map(|pixels| {
-            let unit = Unit::new(scene, backend, &Unanswered, &small);
-            unit.run(pixels, &Progress::default()).statistics.rays.shadow
-        })
-        .sum();
     let times = f64::from(width) * f64::from(height) * f64::from(samples).powi(2)
         / (f64::from(small.width) * f64::from(small.height));
     (asked as f64 * times) as u64
+}
+
+/// The rays of a small picture of one sample a pixel.
+pub(super) struct Small {
+    width: u32,
+    height: u32,
+    /// Row by row.
+    rays: Vec<RayCounts>,
+}
+
+impl Small {
+    /// The same view in so many times fewer pixels along each side.
+    pub fn of(scene: &Scene, backend: &dyn Occlusion, settings: &Settings, stride: u32) -> Self {
+        let (width, height) = (settings.width.div_ceil(stride), settings.height.div_ceil(stride));
+        let small = Settings {
+            width,
+            height,
+            samples: 1,
+            mask: false,
+            answers: None,
+            record: false,
+            ..*settings
+        };
+        let rays = (0..width * height).into_par_iter().map(|pixel| {
+            let unit = Unit::new(scene, backend, &Unanswered, &small);
+            unit.run(&[(pixel % width, pixel / width)], &Progress::default()).statistics.rays
+        });
+        Self { width, height, rays: rays.collect() }
+    }
+
+    /// The rays of one sample of a pixel of the picture, which is so large: those of the place of the small one where it lies.
+    pub fn rays_at(&self, (x, y): Place, settings: &Settings) -> &RayCounts {
+        let along = |place: u32, small: u32, all: u32| {
+            (u64::from(place) * u64::from(small) / u64::from(all)) as usize
+        };
+        let row = along(y, self.height, settings.height);
+        let column = along(x, self.width, settings.width);
+        &self.rays[row * self.width as usize + column]
+    }
 }
 
 /// Says that everything is blocked.

@@ -19,6 +19,7 @@ mod settings;
 mod shading;
 mod statistics;
 mod whitted;
+mod work;
 
 pub use answers::{AnswerMap, Answered, Shown};
 pub use film::{Film, ShadowMask};
@@ -39,6 +40,7 @@ use crate::occlusion::Occlusion;
 use crate::scene::Scene;
 use crate::shadow::Prepared;
 use whitted::Unit;
+use work::Units;
 
 /// What a render gives.
 #[derive(Clone, Debug)]
@@ -78,22 +80,25 @@ pub fn render(
     progress: &Progress,
 ) -> Result<Rendered, SettingsError> {
     settings.check()?;
-    let units = settings.units();
-    let done: Vec<_> = units
-        .par_iter()
-        .map(|pixels| {
-            let unit = Unit::new(scene, backend, shadows, settings).run(pixels, progress);
-            progress.pixels.fetch_add(pixels.len() as u64, Relaxed);
-            unit
+    let Units { pixels: units, order } = Units::of(scene, backend, settings);
+    // One by one in this order: a range would be halved, and its second half begun as soon as its first.
+    let mut done: Vec<_> = order
+        .into_iter()
+        .par_bridge()
+        .map(|number| {
+            let unit = Unit::new(scene, backend, shadows, settings).run(&units[number], progress);
+            progress.pixels.fetch_add(units[number].len() as u64, Relaxed);
+            (number, unit)
         })
         .collect();
+    done.sort_unstable_by_key(|(number, _)| *number);
     let mut film = Film::new(settings.width, settings.height);
     let mut mask =
         settings.mask.then(|| ShadowMask::new(settings.width, settings.height, scene.lights.len()));
     let mut answers = settings.answers.map(|_| AnswerMap::new(settings.width, settings.height));
     let mut statistics = Statistics::default();
     let mut queries = Vec::new();
-    for (pixels, unit) in units.iter().zip(done) {
+    for (pixels, (_, unit)) in units.iter().zip(done) {
         for (place, colour) in pixels.iter().zip(&unit.colours) {
             film.set(*place, *colour);
         }
@@ -126,8 +131,7 @@ pub fn record(
 ) -> Result<(), SettingsError> {
     settings.check()?;
     let settings = Settings { record: true, ..*settings };
-    let units = settings.units();
-    for pixels in &units {
+    for pixels in &Units::of(scene, backend, &settings).pixels {
         let unit = Unit::new(scene, backend, shadows, &settings);
         take(unit.run(pixels, &Progress::default()).queries);
     }

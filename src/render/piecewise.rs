@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use super::order::Place;
 use super::whitted::Unit;
+use super::work::Units;
 use super::{Progress, Settings, SettingsError, Statistics};
 use crate::occlusion::Occlusion;
 use crate::scene::Scene;
@@ -58,13 +59,16 @@ impl<'a> Piecewise<'a> {
         every: u32,
     ) -> Result<Self, SettingsError> {
         settings.check()?;
-        let Settings { width, height, samples, order, .. } = *settings;
+        let Settings { samples, order, .. } = *settings;
         let stretch = (SAMPLES_A_PIECE / (samples * samples)).max(1) as usize;
         let (mut pixels, mut pieces) = (Vec::new(), Vec::new());
-        for (row, unit) in order.units([width, height], 1, samples).into_iter().enumerate() {
+        let rows = Settings { rows_per_unit: 1, ..*settings };
+        let units = Units::of(scene, backend, &rows);
+        for (row, &unit) in units.order.iter().enumerate() {
             if !Self::picks(row as u32, every) {
                 continue;
             }
+            let unit = &units.pixels[unit];
             let length = if order.batches() { unit.len() } else { stretch };
             for piece in unit.chunks(length) {
                 pieces.push(pixels.len()..pixels.len() + piece.len());
