@@ -259,3 +259,26 @@ fn trees_of_any_depth_lose_nothing() {
         }
     }
 }
+
+#[test]
+fn a_ray_that_starts_just_before_a_triangle_sees_it_however_its_distance_rounds() {
+    let near = [[-8.0, -8.0, 8.0], [8.0, -8.0, -8.0], [-2.4, 8.0, 3.2]];
+    let far = [[50.0, -30.0, -30.0], [50.0, 40.0, -30.0], [50.0, 0.0, 40.0]];
+    let mesh = [near, far].map(|triangle| triangle.map(Vec3::from));
+    let (origin, direction) = (Vec3::new(-1.2, 3.8e-15, 1.6), Vec3::new(33.0, 10.0, 3.5));
+    // The plane is 5.3e-18 away, which f64 cancels.
+    let ray = Ray { origin, direction, end: f32::INFINITY };
+    let tally = &mut Tally::default();
+    for mesh in [&mesh[..], &mesh[..1]] {
+        let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());
+        let options = BuildOptions::default();
+        let mut all = backends(&triangles, Test::Exact, &options);
+        all.push(build(Backend::Brute, Test::Exact, &triangles, &options).unwrap());
+        for backend in all {
+            assert!(backend.meets(0, &ray, tally));
+            let nearest = backend.nearest(&ray, tally).expect("it is in the way");
+            assert_eq!(nearest.triangle, 0);
+            assert!(nearest.t > 0.0 && nearest.t < 1e-5, "{nearest:?}");
+        }
+    }
+}

@@ -57,6 +57,8 @@ const ROUNDING: f32 = 5.0 * f32::EPSILON;
 const UNDERFLOW: f32 = 2.0 * f32::MIN_POSITIVE;
 
 impl TriangleTest for Exact {
+    const IS_EXACT: bool = true;
+
     #[inline(always)]
     fn claims<L: Lanes>(ray: &RayLanes<L>, &[v0, v1, v2]: &[Vector<L>; 3]) -> Claims {
         let underflow = L::splat(UNDERFLOW);

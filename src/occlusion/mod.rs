@@ -124,7 +124,8 @@ pub trait Occlusion: Any + Send + Sync {
     /// All transparent triangles that the ray meets, each once, in ascending order.
     fn transparent(&self, ray: &Ray, found: &mut Vec<TriangleId>, tally: &mut Tally);
 
-    /// The triangle the ray meets first; of several at the same distance, the one with the least id.
+    /// The triangle the ray meets first, by distances in f64: of those that differ by less than rounding, as at a shared edge, any may be
+    /// first, the same over every backend of ours; of several at the same distance it is the one with the least id.
     fn nearest(&self, ray: &Ray, tally: &mut Tally) -> Option<Nearest>;
 
     /// The triangles in an order that keeps each cell together; a triangle may recur.

@@ -34,10 +34,22 @@ pub(super) fn distance(ray: &Ray, &[a, b, c]: &Triangle, slack: f64) -> Option<f
     if !(t > 0.0 && t.is_finite()) {
         return None;
     }
-    let (low, high) = (a.min(b).min(c) - slack, a.max(b).max(c) + slack);
+    let (low, high) = around([a, b, c], slack);
     let place = origin + t * direction;
     let is_within = place.cmpge(low).all() && place.cmple(high).all();
     Some(if is_within { t } else { clamp(t, ray, low, high) })
+}
+
+/// Where the ray comes to a triangle that it does meet, though in f64 the plane seems to be behind the origin, or nowhere.
+#[cold]
+fn entry(ray: &Ray, triangle: &Triangle, slack: f64) -> f64 {
+    let (low, high) = around(triangle.map(|corner| corner.as_dvec3()), slack);
+    clamp(0.0, ray, low, high).max(f64::MIN_POSITIVE)
+}
+
+/// The box of a triangle, and some slack around it.
+fn around([a, b, c]: [DVec3; 3], slack: f64) -> (DVec3, DVec3) {
+    (a.min(b).min(c) - slack, a.max(b).max(c) + slack)
 }
 
 /// The distance within a box that is nearest to `t`; `t` if the ray misses it.
@@ -125,7 +137,12 @@ impl<'a, T: TriangleTest, L: Lanes, const IN_PLACE: bool> NearestVisitor<'a, T, 
             ids,
             wanted: |_| true,
             hit: move |triangle| {
-                if let Some(t) = distance(ray, &triangles.get(triangle), triangles.slack()) {
+                let (corners, slack) = (triangles.get(triangle), triangles.slack());
+                let distance = distance(ray, &corners, slack);
+                // A hit that is certain is not lost to the rounding of its distance.
+                let distance =
+                    distance.or_else(|| T::IS_EXACT.then(|| entry(ray, &corners, slack)));
+                if let Some(t) = distance {
                     let nearer = best.is_none_or(|best| (t, triangle) < (best.t, best.triangle));
                     if nearer {
                         *best = Some(Nearest { triangle, t });

@@ -69,6 +69,9 @@ pub trait TriangleTest: Copy + Default + Send + Sync + 'static {
     /// Whether it needs the shear of [`RayLanes`].
     const SHEARS: bool = false;
 
+    /// Whether what it says is true, and not what some arithmetic makes of it.
+    const IS_EXACT: bool = false;
+
     /// Tests as many triangles as `L` has lanes. The ray is valid ([`Ray::is_valid`]).
     fn claims<L: Lanes>(ray: &RayLanes<L>, corners: &[Vector<L>; 3]) -> Claims;
 
