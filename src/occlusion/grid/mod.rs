@@ -151,6 +151,21 @@ impl Grid {
         }
     }
 
+    /// A uniform grid of about so many voxels with at most so many entries, which it does not take memory for before it has
+    /// counted them.
+    ///
+    /// # Errors
+    /// If there would be more.
+    pub fn with_at_most(
+        triangles: &Triangles,
+        voxels: usize,
+        entries: u32,
+    ) -> Result<Self, TooFine> {
+        let resolution = GridOptions::uniform(triangles, voxels).resolution;
+        let level = Self::place(triangles, resolution, UNIFORM_DENSITY);
+        build::build(triangles, level, entries.min(MOST_ENTRIES_ASKED))
+    }
+
     /// Where a grid is, of the given resolution or with `density` voxels to a triangle.
     fn place(triangles: &Triangles, resolution: Option<[u32; 3]>, density: f64) -> Level {
         let bounds = triangles.bounds().unwrap_or_default();

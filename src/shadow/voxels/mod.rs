@@ -16,7 +16,7 @@ pub(super) use source::Source;
 use super::Budget;
 use crate::exact::Exact;
 use crate::geometry::{Ray, TriangleId, Triangles};
-use crate::occlusion::{Clip, Engine, Grid, GridOptions, Level, Occlusion, Steps, Tally, Walk};
+use crate::occlusion::{Clip, Engine, Grid, Level, Occlusion, Steps, Tally, TooFine, Walk};
 
 /// A closed box in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,9 +32,9 @@ impl Span {
     }
 }
 
-/// Bytes of a grid for each of its voxels, and for each triangle in its lists, about.
+/// Bytes of a grid for each of its voxels, about, and for each entry of its lists.
 const VOXEL_BYTES: f64 = 8.0;
-const LISTED_BYTES: f64 = 8.0;
+const ENTRY_BYTES: f64 = size_of::<TriangleId>() as f64;
 
 /// A uniform grid of its own, whatever the backend; answers by the exact test.
 pub(super) struct Voxels {
@@ -45,34 +45,46 @@ pub(super) struct Voxels {
 
 impl Voxels {
     /// A grid with `density` voxels to a triangle, or coarser where the budget does not allow for it and
-    /// another `bytes_a_voxel`, which are all taken from the budget. `None` where that leaves too few.
-    /// Also says whether it had to be coarser.
+    /// another `bytes_a_voxel`, which are all taken from the budget. None where that leaves too few.
+    /// Also says what is missing for the finest one: bytes, at least; 0 if that is what it is.
     fn within(
         triangles: &Arc<Triangles>,
         density: f64,
         bytes_a_voxel: f64,
         budget: &Budget,
-    ) -> Option<(Self, bool)> {
+    ) -> (Option<Self>, u64) {
         let wanted = wanted(triangles, density);
+        let left = budget.left() as f64;
+        let bytes = |voxels: f64, entries: f64| {
+            voxels * (VOXEL_BYTES + bytes_a_voxel) + entries * ENTRY_BYTES
+        };
+        let mut missing = bytes(wanted, triangles.len() as f64) - left;
         let mut voxels = wanted;
         while voxels >= FEWEST {
-            // A grid that will not fit need not be tried.
-            if Self::bytes(triangles, voxels, bytes_a_voxel) <= budget.left() as f64 {
-                let options = GridOptions::uniform(triangles, voxels as usize);
-                let grid = Grid::new(triangles, options);
-                let held = (grid.voxel_count() as f64 * bytes_a_voxel) as usize;
-                if budget.take(grid.memory() + held) {
-                    return Some((Self::over(triangles, grid), voxels < wanted));
+            let entries = (left - bytes(voxels, 0.0)) / ENTRY_BYTES;
+            // Each triangle has an entry at least: a grid that will not fit need not be tried.
+            if entries >= triangles.len() as f64 {
+                match Grid::with_at_most(triangles, voxels as usize, entries as u32) {
+                    Ok(grid) => {
+                        let held =
+                            grid.memory() + (grid.voxel_count() as f64 * bytes_a_voxel) as usize;
+                        if budget.take(held) {
+                            let missing = if voxels < wanted { missing.max(1.0) as u64 } else { 0 };
+                            return (Some(Self::over(triangles, grid)), missing);
+                        }
+                        if voxels == wanted {
+                            missing = held as f64 - left;
+                        }
+                    }
+                    Err(TooFine { entries, .. }) if voxels == wanted => {
+                        missing = bytes(wanted, entries as f64) - left;
+                    }
+                    Err(_) => {}
                 }
             }
             voxels /= COARSER;
         }
-        None
-    }
-
-    /// Bytes of so many voxels, at least.
-    fn bytes(triangles: &Triangles, voxels: f64, bytes_a_voxel: f64) -> f64 {
-        voxels * (VOXEL_BYTES + bytes_a_voxel) + triangles.len() as f64 * LISTED_BYTES
+        (None, missing.max(1.0) as u64)
     }
 
     /// The same, and which triangles lie beyond whose edges; says in `notes` what the budget does not allow.
@@ -85,14 +97,13 @@ impl Voxels {
     ) -> Option<(Self, Neighbours)> {
         let bytes = Neighbours::bytes(triangles);
         let left = budget.left();
-        if budget.take(bytes) {
-            if let Some((voxels, coarser)) = Self::within(triangles, density, bytes_a_voxel, budget)
-            {
-                if coarser {
+        let missing = if budget.take(bytes) {
+            let (voxels, missing) = Self::within(triangles, density, bytes_a_voxel, budget);
+            if let Some(voxels) = voxels {
+                if missing > 0 {
                     let [x, y, z] = voxels.level().resolution;
-                    let wanted = Self::bytes(triangles, wanted(triangles, density), bytes_a_voxel);
-                    let advice =
-                        budget.advice((wanted as u64).saturating_sub(voxels.memory() as u64));
+                    // What they take now would be free for finer ones.
+                    let advice = budget.advice(budget.left() + missing);
                     notes.push(format!(
                         "{x} by {y} by {z} voxels only, to keep the memory limit; {advice}"
                     ));
@@ -100,9 +111,13 @@ impl Voxels {
                 return Some((voxels, Neighbours::new(triangles)));
             }
             budget.give_back(bytes);
-        }
-        let wanted = Self::bytes(triangles, wanted(triangles, density), bytes_a_voxel);
-        let advice = budget.advice(bytes as u64 + wanted as u64);
+            missing
+        } else {
+            let voxels = wanted(triangles, density) * (VOXEL_BYTES + bytes_a_voxel);
+            let least = voxels + triangles.len() as f64 * ENTRY_BYTES;
+            (bytes as u64).saturating_sub(left) + least as u64
+        };
+        let advice = budget.advice(left + missing);
         notes.push(format!(
             "steps aside: the memory limit leaves {left} bytes, too few for voxels; {advice}"
         ));
@@ -180,3 +195,41 @@ const MOST: f64 = (1 << 21) as f64;
 
 /// How many times fewer voxels the next coarser grid has.
 const COARSER: f64 = 8.0;
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    /// Triangles as large as the scene: each lies in many voxels.
+    fn large(count: u32) -> Arc<Triangles> {
+        let place = |number: u32| ((number as f32 * 0.618).fract() - 0.5) * 2.0;
+        let corner = |number: u32| Vec3::new(place(number), place(7 * number), place(31 * number));
+        let triangle = |number: u32| [3 * number, 3 * number + 1, 3 * number + 2].map(corner);
+        Arc::new((0..count).map(triangle).collect())
+    }
+
+    #[test]
+    fn who_follows_the_advice_comes_to_voxels_as_fine_as_wanted() {
+        let triangles = large(2000);
+        let mut bytes = 1000;
+        let mut tries = 0;
+        loop {
+            let budget = Budget::new(bytes);
+            let mut notes = Vec::new();
+            let made = Voxels::with_neighbours(&triangles, 8.0, 4.0, &budget, &mut notes);
+            if let Some((voxels, _)) = &made {
+                assert!(voxels.memory() as u64 <= bytes);
+            }
+            let [note] = &notes[..] else { break assert!(made.is_some() && notes.is_empty()) };
+            let advised = note.split("--memory ").nth(1).and_then(|rest| rest.split('M').next());
+            let advised: u64 = advised.and_then(|number| number.parse().ok()).expect("advice");
+            assert!(advised << 20 > bytes, "{note} at {bytes} bytes");
+            bytes = advised << 20;
+            tries += 1;
+            assert!(tries <= 3, "{note}");
+        }
+        assert!(tries > 0);
+    }
+}
