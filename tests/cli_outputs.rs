@@ -166,12 +166,13 @@ fn a_report_that_standard_output_does_not_take_is_a_failure() {
         let output = command.stdout(full).output().unwrap();
         assert_refusal(&output, &["cannot write standard output: No space left"]);
         assert!(!folder.join("s.json").exists(), "umbra {line}");
-        // Whoever has seen enough is no failure.
+        // Whoever has seen enough is no failure, and gets the files.
         let mut command = umbra(folder);
         command.args(line.split_whitespace());
         let output = command.stdout(closed()).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "umbra {line}: {}", said(&output));
         assert!(!said(&output).contains("cannot") && !said(&output).contains("panicked"));
+        fs::remove_file(folder.join("s.json")).unwrap();
     }
 }
 
@@ -186,4 +187,15 @@ fn a_dash_is_not_the_name_of_an_output() {
     ] {
         refused(folder.path(), line, &["cannot write -", "give the name of a file"]);
     }
+}
+
+#[test]
+fn a_name_that_is_too_long_is_refused_before_anything_is_rendered_or_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "mesh.obj", TRIANGLE);
+    // Long enough for the picture, and too long for those beside it.
+    let name = format!("{}.png", "a".repeat(245));
+    write(folder.path(), &name, "an old picture");
+    let line = format!("render mesh.obj -o {name} --size 8x6 --aov");
+    refused(folder.path(), &line, &["cannot write", ".png"]);
 }

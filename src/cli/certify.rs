@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::numbers::whole;
 use super::options::{MOST_THREADS, pool_for};
-use super::outputs::{print, write_json};
+use super::outputs::{print_beside_files, write_json};
 use super::progress::with_rate;
 use crate::exact::adversary::Class;
 use crate::exact::campaign::{Summary, campaign};
@@ -80,7 +80,7 @@ impl Certify {
         );
         let all = rows.iter().fold(Summary::default(), |all, row| all + row.summary);
         let seconds = start.elapsed().as_secs_f64();
-        print(&table(&rows, all, seconds))?;
+        print_beside_files(&table(&rows, all, seconds), self.stats.is_some())?;
         if let Some(path) = &self.stats {
             write_json(path, &Report { classes: &rows, all, seconds })?;
         }

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::failure::{Failure, say};
 use super::numbers::whole;
 use super::options::{ContenderOptions, MOST_DEPTH, MOST_THREADS, load_scene, parse_size, pool};
-use super::outputs::{Outputs, check_outputs, print};
+use super::outputs::{Outputs, check_outputs, print_beside_files};
 use super::progress::{with_bar, with_rate};
 use crate::measure::compare::{CompareError, Report, compare};
 use crate::measure::contender::Selection;
@@ -122,7 +122,8 @@ impl Compare {
             pool.install(|| compare(&scene, &recording, &contenders, &answered))
         })?;
 
-        print(&format!("{report}{}", report.listing(self.show)))?;
+        let text = format!("{report}{}", report.listing(self.show));
+        print_beside_files(&text, !outputs.is_empty())?;
         let mut outputs = Outputs::default();
         if let Some(path) = &self.list {
             outputs.add(path, report.csv().as_bytes())?;

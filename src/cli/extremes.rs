@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::numbers::whole;
 use super::options::{MOST_THREADS, pool_for};
-use super::outputs::{print, write_json};
+use super::outputs::{print_beside_files, write_json};
 use super::progress::with_word;
 use crate::measure::extremes::cases::{Case, cases};
 use crate::measure::extremes::{Conditions, Report, examine, head};
@@ -64,11 +64,12 @@ impl Extremes {
         }
         let wanted = |case: &Case| self.cases.is_empty() || self.cases.contains(&case.name);
         let cases: Vec<_> = cases().into_iter().filter(wanted).collect();
-        print(&head())?;
+        let writes_files = self.stats.is_some();
+        print_beside_files(&head(), writes_files)?;
         let mut reports = Vec::new();
         for case in &cases {
             let report = with_word(&case.what, || pool.install(|| examine(case, &conditions)))?;
-            print(&report.lines())?;
+            print_beside_files(&report.lines(), writes_files)?;
             reports.push(report);
         }
         if let Some(path) = &self.stats {

@@ -55,6 +55,14 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
         .map_err(|reason| unprinted(&reason))
 }
 
+/// The same; where nobody reads on, a command that writes files too goes on for those.
+pub(super) fn print_beside_files(text: &str, writes_files: bool) -> Result<(), Failure> {
+    match print(text) {
+        Err(Failure::NoReader) if writes_files => Ok(()),
+        printed => printed,
+    }
+}
+
 /// Standard output does not take what is said.
 pub(super) fn unprinted(reason: &io::Error) -> Failure {
     match reason.kind() {
@@ -100,7 +108,12 @@ fn check_writable(path: &Path) -> Result<(), Failure> {
     if !folder.is_dir() {
         return Err(refuse(format!("there is no folder {}; make it first", folder.display())));
     }
-    let there = path.metadata().ok();
+    let there = match path.metadata() {
+        Err(reason) if reason.kind() == io::ErrorKind::InvalidFilename => {
+            return Err(Failure::unwritable(path, &reason));
+        }
+        found => found.ok(),
+    };
     if there.as_ref().is_some_and(std::fs::Metadata::is_dir) {
         return Err(refuse("it is a folder; give the name of a file".to_owned()));
     }

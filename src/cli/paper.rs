@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::numbers::{finite, whole};
 use super::options::{MOST_DEPTH, only_over, parse_resolution, parse_size};
-use super::outputs::{check_outputs, print, write_json};
+use super::outputs::{check_outputs, print_beside_files, write_json};
 use super::progress::with_bar;
 use crate::measure::paper::{
     Conditions, LOG, NODE_BYTES, Published, SceneReport, Storage, TABLE, VariantReport, callgrind,
@@ -177,10 +177,10 @@ impl Paper {
             let report = with_bar(conditions.pixels(published.scene), &progress, || {
                 pool.install(|| reproduce(published, &conditions, &progress))
             })?;
-            print(&format!("{report}\n"))?;
+            print_beside_files(&format!("{report}\n"), self.stats.is_some())?;
             scenes.push(report);
         }
-        print(&storage_table())?;
+        print_beside_files(&storage_table(), self.stats.is_some())?;
         if let Some(path) = &self.stats {
             let storage = &storage(NODE_BYTES);
             write_json(path, &Report { scenes: &scenes, node_bytes: NODE_BYTES, storage })?;
@@ -201,7 +201,9 @@ impl Paper {
             let of_scene = with_bar(conditions.pixels_of_variants(scene), &progress, || {
                 pool.install(|| compare_variants(scene, conditions, &progress))
             })?;
-            of_scene.iter().try_for_each(|report| print(&format!("{report}\n")))?;
+            for report in &of_scene {
+                print_beside_files(&format!("{report}\n"), self.stats.is_some())?;
+            }
             reports.extend(of_scene);
         }
         if let Some(path) = &self.stats {

@@ -7,7 +7,7 @@ use clap::Args;
 use super::failure::{Failure, say};
 use super::numbers::whole;
 use super::options::{ContenderOptions, MOST_DEPTH, MOST_THREADS, load_scene, parse_size, pool};
-use super::outputs::{Outputs, check_outputs, print};
+use super::outputs::{Outputs, check_outputs, print_beside_files};
 use super::progress::with_bar;
 use crate::measure::contender::{Choice, Contender, Selection};
 use crate::measure::tradeoff::{Conditions, Report, csv, measure, page, plot, table};
@@ -94,7 +94,7 @@ impl Tradeoff {
         let report = with_bar(conditions.steps(&scene), &progress, || {
             pool.install(|| measure(&scene, &conditions, &progress))
         })?;
-        print(&table(&report))?;
+        print_beside_files(&table(&report), !outputs.is_empty())?;
         self.write(&report)?;
         report.failure().map_or(Ok(()), |why| Err(Failure::Comparison(why)))
     }

@@ -35,8 +35,10 @@ not part of the segment, and the origin is taken as given, without an offset. Tr
 do not block.
 
 Coordinates are those of the scene's file. Where umbra moves a scene that is far from the origin, it
-moves the rays by as much, in f64; then they are rounded to f32, once. A row with NaN or infinity, or in
-which a number or target - origin is beyond f32, is answered 0; how many there were is said at the end.
+moves the rays by as much, in f64; then origin and target are rounded to f32, and so is target - origin, which is
+the ray's direction: a target that lies nearer to a triangle than such roundings may come to lie on the other
+side of it. A row with NaN or infinity, or in which a number or target - origin is beyond f32, is answered 0;
+how many there were is said at the end.
 A line that is not six numbers ends the command: it says which, and no file is written (standard output
 may have had answers to lines before it).
 
