@@ -9,6 +9,9 @@
 //!
 //! [`AtLeast`] is the lower bound, as a test; a triangle that passes it proves that Embree says
 //! "blocked", which is what memories in front of Embree need. [`AtMost`] is the upper bound.
+//!
+//! They hold for numbers of 1e-18 to 1e12 in magnitude, and zero: of 17 million rays among those none lay outside. Where coordinates or directions come near
+//! to denormal numbers, which Embree may take for zero, 153 did. Our `exact` test has no such range.
 
 use std::marker::PhantomData;
 
