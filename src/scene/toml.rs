@@ -64,6 +64,7 @@ use super::{
     Camera, Draft, DraftTriangle, Light, Material, SceneError, builtin,
     load::{empty_draft, is_mesh, malformed, read_file, read_mesh},
     placement::Placement,
+    polygon::triangulate,
 };
 
 #[derive(Deserialize)]
@@ -210,9 +211,15 @@ fn add_mesh(path: &Path, draft: &mut Draft, entry: &MeshEntry) -> Result<(), Str
             builtin::draft_at(name, 1.0).map_err(|error| error.to_string())?
         }
         (None, None, Some(quads), None) => {
-            inline("quads", quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]))
+            let halves = |corners: &[[f64; 3]; 4]| {
+                let corners = corners.map(DVec3::from);
+                triangulate(&corners).into_iter().map(move |half| half.map(|at| corners[at]))
+            };
+            inline("quads", quads.iter().flat_map(halves))
         }
-        (None, None, None, Some(triangles)) => inline("triangles", triangles.iter().copied()),
+        (None, None, None, Some(triangles)) => {
+            inline("triangles", triangles.iter().map(|corners| corners.map(DVec3::from)))
+        }
         _ => return Err("give one of file, builtin, quads and triangles".to_owned()),
     };
     if mesh.triangles.is_empty() {
@@ -245,13 +252,9 @@ fn add_mesh(path: &Path, draft: &mut Draft, entry: &MeshEntry) -> Result<(), Str
 }
 
 /// A mesh that is written in the description itself.
-fn inline(name: &str, triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Draft {
+fn inline(name: &str, triangles: impl Iterator<Item = [DVec3; 3]>) -> Draft {
     let triangles = triangles
-        .map(|corners| DraftTriangle {
-            corners: corners.map(DVec3::from),
-            normals: [Vec3::ZERO; 3],
-            material: 0,
-        })
+        .map(|corners| DraftTriangle { corners, normals: [Vec3::ZERO; 3], material: 0 })
         .collect();
     let name = name.to_owned();
     Draft { name, triangles, materials: vec![Material::default()], ..Draft::default() }
