@@ -161,8 +161,9 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
     for (name, material) in description.materials {
         draft.materials.push(Material { name, ..material });
     }
+    let own_materials = draft.materials.len();
     for (index, entry) in description.mesh.iter().enumerate() {
-        add_mesh(path, &mut draft, entry).map_err(|problem| {
+        add_mesh(path, &mut draft, own_materials, entry).map_err(|problem| {
             let line = soundness::line(&text, &[Step::Key("mesh"), Step::Element(index)]);
             malformed(path, format!("line {line}: mesh {}: {problem}", index + 1))
         })?;
@@ -189,12 +190,19 @@ fn light(entry: &LightEntry) -> Light {
     }
 }
 
-/// Adds a mesh, or says what is wrong with it.
-fn add_mesh(path: &Path, draft: &mut Draft, entry: &MeshEntry) -> Result<(), String> {
+/// Adds a mesh, or says what is wrong with it. The description's own materials are the first of the draft:
+/// it names no others.
+fn add_mesh(
+    path: &Path,
+    draft: &mut Draft,
+    own_materials: usize,
+    entry: &MeshEntry,
+) -> Result<(), String> {
     let own = match &entry.material {
         None => None,
         Some(name) => {
-            let place = draft.materials.iter().position(|material| material.name == *name);
+            let mut own = draft.materials[..own_materials].iter();
+            let place = own.position(|material| material.name == *name);
             Some(place.ok_or_else(|| format!("there is no [materials.{name}]"))? as u32)
         }
     };

@@ -219,3 +219,23 @@ fn a_concave_quad_blocks_what_it_covers_and_nothing_else() {
         }
     }
 }
+
+#[test]
+fn materials_are_those_of_the_description_whatever_the_meshes_bring() {
+    let files = Files::new();
+    files.write("a.mtl", "newmtl red\nKd 1 0 0\n");
+    files.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+    let (file, own) = ("[[mesh]]\nfile = \"a.obj\"\n", format!("{TRIANGLE}material = \"red\"\n"));
+    for (text, line) in [(format!("{file}{own}"), 3), (format!("{own}{file}"), 1)] {
+        files.write("a.toml", &text);
+        let message = files.refusal("a.toml");
+        let told = format!("a.toml: line {line}: mesh ");
+        assert!(message.starts_with(&told), "{message}");
+        assert!(message.ends_with(": there is no [materials.red]"), "{message}");
+        files.write("a.toml", format!("{text}[materials.red]\ndiffuse = [0.5, 0, 0]\n"));
+        let scene = files.load("a.toml").expect("a sound file");
+        let mut reds = [0, 1].map(|id| scene.material(id).diffuse.x);
+        reds.sort_by(f32::total_cmp);
+        assert_eq!(reds, [0.5, 1.0], "one of each");
+    }
+}
