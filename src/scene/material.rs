@@ -62,6 +62,18 @@ impl Material {
     }
 }
 
+/// Materials by name, for notes: the first few, and how many there are besides.
+pub(super) fn listed(names: &[String]) -> String {
+    const FEW: usize = 4;
+    let quoted: Vec<String> = names.iter().take(FEW).map(|name| format!("'{name}'")).collect();
+    let plural = if names.len() == 1 { "" } else { "s" };
+    let more = match names.len().saturating_sub(FEW) {
+        0 => String::new(),
+        count => format!(" and {count} more"),
+    };
+    format!("material{plural} {}{more}", quoted.join(", "))
+}
+
 /// Colours in files: three numbers.
 mod colour {
     use super::{Deserialize, Serialize, Vec3};

@@ -12,8 +12,17 @@ use super::{
     load::{read_plain, without_mark},
 };
 
+/// What stands before a `#` that follows white space: all but a comment, unless the `#` is part of a
+/// name, as in `Material #25`.
+pub(super) fn before_comment(names: &str) -> &str {
+    let begins =
+        |&(at, _): &(usize, &str)| names[..at].chars().next_back().is_none_or(char::is_whitespace);
+    let end = names.match_indices('#').find(begins).map_or(names.len(), |(at, _)| at);
+    names[..end].trim_end()
+}
+
 /// Reads what an `mtllib` line of the OBJ file `obj` names: one file, whose name may hold spaces, or
-/// several. Those that were read and those that are missing are noted.
+/// several, before a comment perhaps. Those that were read and those that are missing are noted.
 pub(super) fn read_libraries(obj: &Path, names: &str, draft: &mut Draft) -> Vec<Material> {
     let folder = obj.parent().unwrap_or(Path::new(""));
     let (files, notes) = (&mut draft.files, &mut draft.notes);
@@ -23,11 +32,13 @@ pub(super) fn read_libraries(obj: &Path, names: &str, draft: &mut Draft) -> Vec<
         files.push(path);
         Some(bytes)
     };
-    if let Some(bytes) = open(names) {
-        return parse(names.trim(), &String::from_utf8_lossy(&bytes), notes);
+    for name in [names, before_comment(names)] {
+        if let Some(bytes) = open(name) {
+            return parse(name.trim(), &String::from_utf8_lossy(&bytes), notes);
+        }
     }
     let mut materials = Vec::new();
-    for name in names.split_whitespace() {
+    for name in before_comment(names).split_whitespace() {
         match open(name) {
             Some(bytes) => {
                 materials.extend(parse(name, &String::from_utf8_lossy(&bytes), notes));

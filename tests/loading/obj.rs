@@ -97,6 +97,12 @@ fn tabs_windows_lines_comments_and_unknown_keywords_do_no_harm() {
 }
 
 #[test]
+fn a_comment_may_follow_a_number_at_once() {
+    let text = "v 0 0 0#a\nv 1 0 0# b\nv 0 1 0 #c\nvn 0 0 1#d\nf 1//1 2//1 3//1#e\n";
+    assert_eq!(scene("a.obj", text).normals, [[Vec3::Z; 3]]);
+}
+
+#[test]
 fn normals_are_kept_where_all_three_are_sound() {
     let normals = "vn 0 0 1\nvn 0 1 0\nvn 0 0 0\nvn nan 0 0\n";
     let scene = square(&format!(
