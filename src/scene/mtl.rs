@@ -3,7 +3,10 @@
 //! tobj refuses a whole MTL file for one bad line and panics on a colour of fewer than three numbers,
 //! so it is given only the lines that we use and that are sound.
 
-use std::path::Path;
+use std::{
+    collections::{HashMap, HashSet},
+    path::{Path, PathBuf},
+};
 
 use glam::Vec3;
 
@@ -21,34 +24,51 @@ pub(super) fn before_comment(names: &str) -> &str {
     names[..end].trim_end()
 }
 
-/// Reads what an `mtllib` line of the OBJ file `obj` names: one file, whose name may hold spaces, or
-/// several, before a comment perhaps. Those that were read and those that are missing are noted.
-pub(super) fn read_libraries(obj: &Path, names: &str, draft: &mut Draft) -> Vec<Material> {
-    let folder = obj.parent().unwrap_or(Path::new(""));
-    let (files, notes) = (&mut draft.files, &mut draft.notes);
-    let mut open = |name: &str| {
-        let path = folder.join(name.trim().replace('\\', "/"));
-        let bytes = read_plain(&path, u64::MAX).ok().map(without_mark)?;
-        files.push(path);
-        Some(bytes)
-    };
-    for name in [names, before_comment(names)] {
-        if let Some(bytes) = open(name) {
-            return parse(name.trim(), &String::from_utf8_lossy(&bytes), notes);
-        }
+/// The MTL files that an OBJ file names. Each is read once, however often it is named.
+pub(super) struct Libraries<'a> {
+    folder: &'a Path,
+    /// Whether there is such a file, of those that were looked for.
+    is_there: HashMap<PathBuf, bool>,
+    /// The names that are noted as missing.
+    missing: HashSet<String>,
+}
+
+impl<'a> Libraries<'a> {
+    pub(super) fn of(obj: &'a Path) -> Self {
+        let folder = obj.parent().unwrap_or(Path::new(""));
+        Self { folder, is_there: HashMap::new(), missing: HashSet::new() }
     }
-    let mut materials = Vec::new();
-    for name in before_comment(names).split_whitespace() {
-        match open(name) {
-            Some(bytes) => {
-                materials.extend(parse(name, &String::from_utf8_lossy(&bytes), notes));
-            }
-            None => {
-                notes.push(format!("material file '{name}' cannot be read: plain grey instead"))
+
+    /// Reads what an `mtllib` line names: one file, whose name may hold spaces, or several, before a
+    /// comment perhaps. Those that were read and those that are missing are noted in the draft.
+    pub(super) fn read(&mut self, names: &str, draft: &mut Draft) -> Vec<Material> {
+        let mut materials = Vec::new();
+        let uncommented = before_comment(names);
+        if [names, uncommented].iter().any(|name| self.open(name, &mut materials, draft)) {
+            return materials;
+        }
+        for name in uncommented.split_whitespace() {
+            if !self.open(name, &mut materials, draft) && self.missing.insert(name.to_owned()) {
+                let note = format!("material file '{name}' cannot be read: plain grey instead");
+                draft.notes.push(note);
             }
         }
+        materials
     }
-    materials
+
+    /// Adds the materials of a file, unless it was read before; whether there is such a file.
+    fn open(&mut self, name: &str, materials: &mut Vec<Material>, draft: &mut Draft) -> bool {
+        let path = self.folder.join(name.replace('\\', "/"));
+        if let Some(&is_there) = self.is_there.get(&path) {
+            return is_there;
+        }
+        let bytes = read_plain(&path, u64::MAX).ok().map(without_mark);
+        self.is_there.insert(path.clone(), bytes.is_some());
+        let Some(bytes) = bytes else { return false };
+        draft.files.push(path);
+        materials.extend(parse(name, &String::from_utf8_lossy(&bytes), &mut draft.notes));
+        true
+    }
 }
 
 /// The materials of a text. Lines that we use but cannot read are noted, all in one note.

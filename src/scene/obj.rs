@@ -15,7 +15,7 @@ use super::{
     gltf::MAGIC as GLB_MAGIC,
     load::{empty_draft, malformed, read_file},
     material::listed,
-    mtl::{self, before_comment},
+    mtl::{Libraries, before_comment},
     polygon::triangulate,
 };
 
@@ -149,6 +149,7 @@ fn read_vertices(
     draft: &mut Draft,
 ) -> Result<Vertices, SceneError> {
     let mut vertices = Vertices::default();
+    let mut libraries = Libraries::of(path);
     for (number, keyword, rest) in lines(text) {
         let vector = || {
             let mut words = number_words(rest).map(str::parse::<f64>);
@@ -164,7 +165,7 @@ fn read_vertices(
             "v" => vertices.positions.push(vector()?),
             "vn" => vertices.normals.push(vector()?.as_vec3()),
             "mtllib" => {
-                for material in mtl::read_libraries(path, rest, draft) {
+                for material in libraries.read(rest, draft) {
                     materials.define(material);
                 }
             }

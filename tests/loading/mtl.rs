@@ -61,3 +61,19 @@ fn materials_that_are_used_but_not_defined_are_named() {
     assert_eq!(noted(2), format!("{told}materials 'm1', 'm2'"));
     assert_eq!(noted(7), format!("{told}materials 'm1', 'm2', 'm3', 'm4' and 3 more"));
 }
+
+#[test]
+fn a_file_that_is_named_again_is_read_once_and_missing_once() {
+    let files = Files::new();
+    files.write("a.mtl", "newmtl red\nKd 1 0 0\n").write("b.mtl", "newmtl blue\nKd 0 0 1\nKs x\n");
+    let lines = "mtllib a.mtl b.mtl\nmtllib lost.mtl\nmtllib lost.mtl a.mtl\nmtllib b.mtl\n";
+    let text = format!("{TRIANGLE}{}usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n", lines.repeat(3));
+    let scene = files.write("a.obj", text).load("a.obj").expect("a sound file");
+    assert_eq!(diffuse(&scene), [Vec3::X, Vec3::Z]);
+    assert_eq!(scene.materials.len(), 2);
+    assert_eq!(scene.files, ["a.obj", "a.mtl", "b.mtl"].map(|name| files.path(name)));
+    for words in ["'lost.mtl' cannot be read", "file 'b.mtl', line 3"] {
+        let count = scene.notes.iter().filter(|note| note.contains(words)).count();
+        assert_eq!(count, 1, "{:?}", scene.notes);
+    }
+}
