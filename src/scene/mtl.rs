@@ -12,7 +12,7 @@ use glam::Vec3;
 
 use super::{
     Draft, Material,
-    load::{read_plain, without_mark},
+    load::{read_plain, text_of, without_mark},
 };
 
 /// What stands before a `#` that follows white space: all but a comment, unless the `#` is part of a
@@ -66,7 +66,7 @@ impl<'a> Libraries<'a> {
         self.is_there.insert(path.clone(), bytes.is_some());
         let Some(bytes) = bytes else { return false };
         draft.files.push(path);
-        materials.extend(parse(name, &String::from_utf8_lossy(&bytes), &mut draft.notes));
+        materials.extend(parse(name, &text_of(&bytes), &mut draft.notes));
         true
     }
 }

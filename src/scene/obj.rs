@@ -13,7 +13,7 @@ use glam::{DVec3, Vec3};
 use super::{
     Draft, DraftTriangle, Material, SceneError,
     gltf::MAGIC as GLB_MAGIC,
-    load::{empty_draft, malformed, read_file},
+    load::{empty_draft, malformed, read_file, text_of},
     material::listed,
     mtl::{Libraries, before_comment},
     polygon::triangulate,
@@ -31,7 +31,7 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
             format!("this is no OBJ: byte {place} is 0, so it is no text"),
         ));
     }
-    let text = String::from_utf8_lossy(&bytes);
+    let text = text_of(&bytes);
     let text = join_continued(&text);
     let mut materials = Materials::default();
     let mut draft = empty_draft(path);

@@ -103,6 +103,19 @@ fn a_comment_may_follow_a_number_at_once() {
 }
 
 #[test]
+fn lines_may_end_as_on_an_old_macintosh() {
+    let files = Files::new();
+    let text = format!("# a\nmtllib a.mtl\n{SQUARE}usemtl red\nf 1 2 \\\n 3\r\nf 1 3 4\nf 1 2 x\n");
+    let (sound, _) = text.rsplit_once("f 1 2 x").expect("a last line");
+    files.write("a.mtl", "newmtl red\rKd 1 0 0\r");
+    let scene =
+        files.write("a.obj", sound.replace('\n', "\r")).load("a.obj").expect("a sound file");
+    assert_eq!((scene.triangles.len(), scene.material(1).diffuse), (2, Vec3::X));
+    let message = refusal("a.obj", text.replace('\n', "\r"));
+    assert_eq!(message, "a.obj: line 12: 'x' is not a corner of a face");
+}
+
+#[test]
 fn normals_are_kept_where_all_three_are_sound() {
     let normals = "vn 0 0 1\nvn 0 1 0\nvn 0 0 0\nvn nan 0 0\n";
     let scene = square(&format!(
