@@ -24,6 +24,11 @@ pub(super) fn before_comment(names: &str) -> &str {
     names[..end].trim_end()
 }
 
+/// The words that follow a keyword that numbers follow: they hold no `#` of their own.
+pub(super) fn number_words(rest: &str) -> impl Iterator<Item = &str> {
+    rest.split('#').take(1).flat_map(str::split_whitespace)
+}
+
 /// The MTL files that an OBJ file names. Each is read once, however often it is named.
 pub(super) struct Libraries<'a> {
     folder: &'a Path,
@@ -97,9 +102,9 @@ fn sound_line(line: &str) -> Result<String, String> {
     let line = line.trim();
     let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let numbers = |wanted: &str| {
-        let words = rest.split_whitespace().take_while(|word| !word.starts_with('#'));
-        let numbers: Option<Vec<f64>> =
-            words.map(|word| word.parse().ok().filter(|x: &f64| x.is_finite())).collect();
+        let numbers: Option<Vec<f64>> = number_words(rest)
+            .map(|word| word.parse().ok().filter(|x: &f64| x.is_finite()))
+            .collect();
         let numbers = numbers.filter(|numbers| !numbers.is_empty());
         numbers.ok_or_else(|| format!("'{line}' should be '{keyword}' and {wanted}"))
     };

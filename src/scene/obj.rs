@@ -15,7 +15,7 @@ use super::{
     gltf::MAGIC as GLB_MAGIC,
     load::{empty_draft, malformed, read_file, text_of},
     material::listed,
-    mtl::{Libraries, before_comment},
+    mtl::{Libraries, before_comment, number_words},
     polygon::triangulate,
 };
 
@@ -122,11 +122,6 @@ fn join_continued(text: &str) -> Cow<'_, str> {
         }
     }
     Cow::Owned(joined)
-}
-
-/// The words that follow a keyword that numbers follow: they hold no `#` of their own.
-fn number_words(rest: &str) -> impl Iterator<Item = &str> {
-    rest.split('#').take(1).flat_map(str::split_whitespace)
 }
 
 /// Keyword and rest of each line that is not a comment, with its number from 1.

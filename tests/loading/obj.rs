@@ -98,8 +98,12 @@ fn tabs_windows_lines_comments_and_unknown_keywords_do_no_harm() {
 
 #[test]
 fn a_comment_may_follow_a_number_at_once() {
-    let text = "v 0 0 0#a\nv 1 0 0# b\nv 0 1 0 #c\nvn 0 0 1#d\nf 1//1 2//1 3//1#e\n";
-    assert_eq!(scene("a.obj", text).normals, [[Vec3::Z; 3]]);
+    let files = Files::new();
+    files.write("a.mtl", "newmtl red\nKd 1 0 0#a\nd 0.5# b\n");
+    let text = "mtllib a.mtl\nusemtl red\nv 0 0 0#a\nv 1 0 0# b\nv 0 1 0 #c\nvn 0 0 1#d\nf 1//1 2//1 3//1#e\n";
+    let scene = files.write("a.obj", text).load("a.obj").expect("a sound file");
+    assert_eq!(scene.normals, [[Vec3::Z; 3]]);
+    assert_eq!(scene.material(0).diffuse, Vec3::new(0.5, 0.0, 0.0));
 }
 
 #[test]
