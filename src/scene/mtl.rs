@@ -88,6 +88,7 @@ fn parse(name: &str, text: &str, notes: &mut Vec<String>) -> Vec<Material> {
     if let [first, others @ ..] = &unread[..] {
         let more = match others.len() {
             0 => String::new(),
+            1 => ", and so is 1 other line".to_owned(),
             count => format!(", and so are {count} other lines"),
         };
         notes.push(format!("material file '{name}', {first}; it is left out{more}"));
@@ -101,12 +102,14 @@ fn parse(name: &str, text: &str, notes: &mut Vec<String>) -> Vec<Material> {
 fn sound_line(line: &str) -> Result<String, String> {
     let line = line.trim();
     let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let wrong =
+        |wanted: &str| format!("'{line}' should be '{keyword}' and {wanted} within ±3.4e38");
     let numbers = |wanted: &str| {
-        let numbers: Option<Vec<f64>> = number_words(rest)
-            .map(|word| word.parse().ok().filter(|x: &f64| x.is_finite()))
-            .collect();
-        let numbers = numbers.filter(|numbers| !numbers.is_empty());
-        numbers.ok_or_else(|| format!("'{line}' should be '{keyword}' and {wanted}"))
+        // Materials are in f32.
+        let is_held = |number: &f64| (*number as f32).is_finite();
+        let numbers: Option<Vec<f64>> =
+            number_words(rest).map(|word| word.parse().ok().filter(is_held)).collect();
+        numbers.filter(|numbers| !numbers.is_empty()).ok_or_else(|| wrong(wanted))
     };
     Ok(match keyword {
         "newmtl" if rest.trim().is_empty() => return Err("'newmtl' has no name".to_owned()),
@@ -115,7 +118,7 @@ fn sound_line(line: &str) -> Result<String, String> {
             [red, green, blue, ..] => format!("{keyword} {red} {green} {blue}\n"),
             // One number stands for all three channels.
             [grey] => format!("{keyword} {grey} {grey} {grey}\n"),
-            _ => return Err(format!("'{line}' should be '{keyword}' and three numbers")),
+            _ => return Err(wrong("three numbers")),
         },
         "Ns" | "Ni" | "d" | "Tr" => format!("{keyword} {}\n", numbers("a number")?[0]),
         "illum" => format!("illum {}\n", numbers("a number")?[0] as u8),

@@ -77,3 +77,13 @@ fn a_file_that_is_named_again_is_read_once_and_missing_once() {
         assert_eq!(count, 1, "{:?}", scene.notes);
     }
 }
+
+#[test]
+fn numbers_beyond_single_precision_are_left_out_with_their_line() {
+    let mtl = "newmtl lamp\nKe 1e39 0 0\nNs -1e39\nKd 1 0 0\n";
+    let scene = used(mtl, &["mtllib a.mtl\nusemtl lamp"]);
+    assert_eq!((scene.material(0).emission, scene.material(0).diffuse), (Vec3::ZERO, Vec3::X));
+    let told = "line 2: 'Ke 1e39 0 0' should be 'Ke' and three numbers within ±3.4e38; it is left \
+                out, and so is 1 other line";
+    assert!(scene.notes.iter().any(|note| note.ends_with(told)), "{:?}", scene.notes);
+}

@@ -234,7 +234,7 @@ fn lines_of_an_mtl_that_cannot_be_read_are_noted_once_with_their_line() {
     assert_eq!(
         notes,
         [
-            "material file 'a.mtl', line 3: 'Kd a b c' should be 'Kd' and three numbers; it is left out, and so are 2 other lines"
+            "material file 'a.mtl', line 3: 'Kd a b c' should be 'Kd' and three numbers within ±3.4e38; it is left out, and so are 2 other lines"
         ]
     );
     assert!(noted("newmtl red\nKd 1 0 0 # red\nd 1\nKs 0.5\nmap_Kd x\n").is_empty());
