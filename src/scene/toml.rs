@@ -63,6 +63,7 @@ use soundness::Step;
 use super::{
     Camera, Draft, DraftTriangle, Light, Material, SceneError, builtin,
     load::{empty_draft, is_mesh, malformed, read_file, read_mesh},
+    memory,
     placement::Placement,
     polygon::triangulate,
 };
@@ -110,6 +111,16 @@ struct MeshEntry {
     rotate: [f64; 3],
     #[serde(default)]
     translate: [f64; 3],
+}
+
+impl MeshEntry {
+    /// Its triangles, unless they are in a file that has yet to be read.
+    fn known_triangles(&self) -> u64 {
+        let quads = self.quads.as_ref().map_or(0, Vec::len);
+        let triangles = self.triangles.as_ref().map_or(0, Vec::len);
+        let builtin = self.builtin.as_ref().and_then(|name| builtin::triangle_count(name, 1.0));
+        builtin.unwrap_or(0) + (2 * quads + triangles) as u64
+    }
 }
 
 fn unscaled() -> [f64; 3] {
@@ -162,6 +173,8 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
         draft.materials.push(Material { name, ..material });
     }
     let own_materials = draft.materials.len();
+    let known = description.mesh.iter().map(MeshEntry::known_triangles).sum();
+    memory::check(known).map_err(|problem| malformed(path, problem))?;
     for (index, entry) in description.mesh.iter().enumerate() {
         add_mesh(path, &mut draft, own_materials, entry).map_err(|problem| {
             let line = soundness::line(&text, &[Step::Key("mesh"), Step::Element(index)]);
@@ -234,6 +247,7 @@ fn add_mesh(
         // By itself it is no scene either: the same words say why.
         return mesh.finish().map(drop).map_err(|error| error.to_string());
     }
+    memory::check((draft.triangles.len() + mesh.triangles.len()) as u64)?;
     if !mesh.lights.is_empty() || mesh.camera.is_some() {
         draft.notes.push(format!("{}: its lights and camera are left out", mesh.name));
     }

@@ -239,3 +239,13 @@ fn materials_are_those_of_the_description_whatever_the_meshes_bring() {
         assert_eq!(reds, [0.5, 1.0], "one of each");
     }
 }
+
+#[test]
+fn more_triangles_than_can_be_held_are_refused_before_they_are_made() {
+    let count = umbra::scene::builtin::triangle_count("jittered-dense", 1.0).expect("a name");
+    let meshes = usize::try_from((1 << 32) / count + 1).expect("a small number");
+    let text = "[[mesh]]\nbuiltin = \"jittered-dense\"\n".repeat(meshes);
+    let message = refusal("a.toml", text);
+    let told = format!("a.toml: {} triangles are too many; ", count * meshes as u64);
+    assert!(message.starts_with(&told), "{message}");
+}
