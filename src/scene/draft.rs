@@ -4,7 +4,7 @@ use std::{fmt, path::PathBuf, sync::Arc};
 
 use glam::{DVec3, Vec3};
 
-use super::{Camera, Light, Material, Scene, SceneError, sensible};
+use super::{Camera, Light, Material, Scene, SceneError, material::listed, sensible};
 use crate::geometry::{Triangle, Triangles};
 
 /// One triangle in world coordinates.
@@ -100,6 +100,7 @@ impl Draft {
         if self.materials.is_empty() {
             self.materials.push(Material::default());
         }
+        self.clamp_materials();
         let origin = self.local_origin();
         if origin != DVec3::ZERO {
             self.notes.push(format!(
@@ -147,6 +148,7 @@ impl Draft {
         let normals = if smooth { kept().map(sound_normals).collect() } else { Vec::new() };
         drop((opaque, seen_through, std::mem::take(&mut self.triangles)));
         self.drop_unsound_lights_and_camera();
+        self.drop_unsound_surroundings();
         let lights = self.lights.into_iter().map(Light::with_unit_vectors);
         let lights = lights.map(|light| light.relative_to(origin));
 
@@ -192,6 +194,37 @@ impl Draft {
         if self.camera.is_some_and(|camera| !camera.is_sound()) {
             self.notes.push("left out a camera whose numbers make no sense".to_owned());
             self.camera = None;
+        }
+    }
+
+    /// The same for what a surface makes of light.
+    fn clamp_materials(&mut self) {
+        let mut changed = Vec::new();
+        for material in &mut self.materials {
+            let clamped = material.clamped();
+            if *material != clamped {
+                changed.push(clamped.name.clone());
+                *material = clamped;
+            }
+        }
+        if !changed.is_empty() {
+            let note = format!("clamped the numbers that make no sense of {}", listed(&changed));
+            self.notes.push(note);
+        }
+    }
+
+    /// The same for light from everywhere and for the factor to picture values.
+    fn drop_unsound_surroundings(&mut self) {
+        let is_colour = |colour: Vec3| colour.is_finite() && colour.cmpge(Vec3::ZERO).all();
+        if !is_colour(self.ambient) || !is_colour(self.background) {
+            self.choose_surroundings = true;
+            self.notes.push(
+                "left out an ambient light and a background whose numbers make no sense".to_owned(),
+            );
+        }
+        if self.exposure.is_some_and(|factor| !(factor > 0.0 && factor.is_finite())) {
+            self.exposure = None;
+            self.notes.push("left out an exposure that makes no sense".to_owned());
         }
     }
 

@@ -1,6 +1,7 @@
 //! From a name or a path to a scene.
 
 use std::{
+    borrow::Cow,
     fs,
     io::{self, Read},
     path::{Path, PathBuf},
@@ -77,6 +78,16 @@ pub(super) fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
         bytes.drain(..3);
     }
     bytes
+}
+
+/// The text of a file. Where a carriage return alone ends a line, as on old Macintoshes, a line feed stands
+/// in its place.
+pub(super) fn text_of(bytes: &[u8]) -> Cow<'_, str> {
+    let text = String::from_utf8_lossy(bytes);
+    if text.split('\r').skip(1).all(|rest| rest.starts_with('\n')) {
+        return text;
+    }
+    Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n"))
 }
 
 /// A [`SceneError::Malformed`].

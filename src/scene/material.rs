@@ -55,11 +55,44 @@ impl Material {
         self.transmission != Vec3::ZERO
     }
 
+    /// The same material with every number as a description may give it: shares from 0 to 1, the others
+    /// neither negative nor infinite.
+    #[must_use]
+    pub(super) fn clamped(&self) -> Self {
+        let share = |colour: Vec3| colour.max(Vec3::ZERO).min(Vec3::ONE);
+        let brightness = |colour: Vec3| colour.max(Vec3::ZERO).min(Vec3::splat(f32::MAX));
+        let positive = |number: f32, otherwise| {
+            if number > 0.0 { number.min(f32::MAX) } else { otherwise }
+        };
+        Self {
+            name: self.name.clone(),
+            diffuse: brightness(self.diffuse),
+            reflection: share(self.reflection),
+            transmission: share(self.transmission),
+            refraction_index: positive(self.refraction_index, 1.0),
+            highlight: brightness(self.highlight),
+            shininess: positive(self.shininess, 0.0),
+            emission: brightness(self.emission),
+        }
+    }
+
     /// Whether rays are reflected or refracted, so that rendering recurses.
     #[must_use]
     pub fn is_specular(&self) -> bool {
         self.reflection != Vec3::ZERO || self.is_transparent()
     }
+}
+
+/// Materials by name, for notes: the first few, and how many there are besides.
+pub(super) fn listed(names: &[String]) -> String {
+    const FEW: usize = 4;
+    let quoted: Vec<String> = names.iter().take(FEW).map(|name| format!("'{name}'")).collect();
+    let plural = if names.len() == 1 { "" } else { "s" };
+    let more = match names.len().saturating_sub(FEW) {
+        0 => String::new(),
+        count => format!(" and {count} more"),
+    };
+    format!("material{plural} {}{more}", quoted.join(", "))
 }
 
 /// Colours in files: three numbers.

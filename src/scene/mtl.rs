@@ -3,41 +3,77 @@
 //! tobj refuses a whole MTL file for one bad line and panics on a colour of fewer than three numbers,
 //! so it is given only the lines that we use and that are sound.
 
-use std::path::Path;
+use std::{
+    collections::{HashMap, HashSet},
+    path::{Path, PathBuf},
+};
 
 use glam::Vec3;
 
 use super::{
     Draft, Material,
-    load::{read_plain, without_mark},
+    load::{read_plain, text_of, without_mark},
 };
 
-/// Reads what an `mtllib` line of the OBJ file `obj` names: one file, whose name may hold spaces, or
-/// several. Those that were read and those that are missing are noted.
-pub(super) fn read_libraries(obj: &Path, names: &str, draft: &mut Draft) -> Vec<Material> {
-    let folder = obj.parent().unwrap_or(Path::new(""));
-    let (files, notes) = (&mut draft.files, &mut draft.notes);
-    let mut open = |name: &str| {
-        let path = folder.join(name.trim().replace('\\', "/"));
-        let bytes = read_plain(&path, u64::MAX).ok().map(without_mark)?;
-        files.push(path);
-        Some(bytes)
-    };
-    if let Some(bytes) = open(names) {
-        return parse(names.trim(), &String::from_utf8_lossy(&bytes), notes);
+/// What stands before a `#` that follows white space: all but a comment, unless the `#` is part of a
+/// name, as in `Material #25`.
+pub(super) fn before_comment(names: &str) -> &str {
+    let begins =
+        |&(at, _): &(usize, &str)| names[..at].chars().next_back().is_none_or(char::is_whitespace);
+    let end = names.match_indices('#').find(begins).map_or(names.len(), |(at, _)| at);
+    names[..end].trim_end()
+}
+
+/// The words that follow a keyword that numbers follow: they hold no `#` of their own.
+pub(super) fn number_words(rest: &str) -> impl Iterator<Item = &str> {
+    rest.split('#').take(1).flat_map(str::split_whitespace)
+}
+
+/// The MTL files that an OBJ file names. Each is read once, however often it is named.
+pub(super) struct Libraries<'a> {
+    folder: &'a Path,
+    /// Whether there is such a file, of those that were looked for.
+    is_there: HashMap<PathBuf, bool>,
+    /// The names that are noted as missing.
+    missing: HashSet<String>,
+}
+
+impl<'a> Libraries<'a> {
+    pub(super) fn of(obj: &'a Path) -> Self {
+        let folder = obj.parent().unwrap_or(Path::new(""));
+        Self { folder, is_there: HashMap::new(), missing: HashSet::new() }
     }
-    let mut materials = Vec::new();
-    for name in names.split_whitespace() {
-        match open(name) {
-            Some(bytes) => {
-                materials.extend(parse(name, &String::from_utf8_lossy(&bytes), notes));
-            }
-            None => {
-                notes.push(format!("material file '{name}' cannot be read: plain grey instead"))
+
+    /// Reads what an `mtllib` line names: one file, whose name may hold spaces, or several, before a
+    /// comment perhaps. Those that were read and those that are missing are noted in the draft.
+    pub(super) fn read(&mut self, names: &str, draft: &mut Draft) -> Vec<Material> {
+        let mut materials = Vec::new();
+        let uncommented = before_comment(names);
+        if [names, uncommented].iter().any(|name| self.open(name, &mut materials, draft)) {
+            return materials;
+        }
+        for name in uncommented.split_whitespace() {
+            if !self.open(name, &mut materials, draft) && self.missing.insert(name.to_owned()) {
+                let note = format!("material file '{name}' cannot be read: plain grey instead");
+                draft.notes.push(note);
             }
         }
+        materials
     }
-    materials
+
+    /// Adds the materials of a file, unless it was read before; whether there is such a file.
+    fn open(&mut self, name: &str, materials: &mut Vec<Material>, draft: &mut Draft) -> bool {
+        let path = self.folder.join(name.replace('\\', "/"));
+        if let Some(&is_there) = self.is_there.get(&path) {
+            return is_there;
+        }
+        let bytes = read_plain(&path, u64::MAX).ok().map(without_mark);
+        self.is_there.insert(path.clone(), bytes.is_some());
+        let Some(bytes) = bytes else { return false };
+        draft.files.push(path);
+        materials.extend(parse(name, &text_of(&bytes), &mut draft.notes));
+        true
+    }
 }
 
 /// The materials of a text. Lines that we use but cannot read are noted, all in one note.
@@ -52,6 +88,7 @@ fn parse(name: &str, text: &str, notes: &mut Vec<String>) -> Vec<Material> {
     if let [first, others @ ..] = &unread[..] {
         let more = match others.len() {
             0 => String::new(),
+            1 => ", and so is 1 other line".to_owned(),
             count => format!(", and so are {count} other lines"),
         };
         notes.push(format!("material file '{name}', {first}; it is left out{more}"));
@@ -65,12 +102,14 @@ fn parse(name: &str, text: &str, notes: &mut Vec<String>) -> Vec<Material> {
 fn sound_line(line: &str) -> Result<String, String> {
     let line = line.trim();
     let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let wrong =
+        |wanted: &str| format!("'{line}' should be '{keyword}' and {wanted} within ±3.4e38");
     let numbers = |wanted: &str| {
-        let words = rest.split_whitespace().take_while(|word| !word.starts_with('#'));
+        // Materials are in f32.
+        let is_held = |number: &f64| (*number as f32).is_finite();
         let numbers: Option<Vec<f64>> =
-            words.map(|word| word.parse().ok().filter(|x: &f64| x.is_finite())).collect();
-        let numbers = numbers.filter(|numbers| !numbers.is_empty());
-        numbers.ok_or_else(|| format!("'{line}' should be '{keyword}' and {wanted}"))
+            number_words(rest).map(|word| word.parse().ok().filter(is_held)).collect();
+        numbers.filter(|numbers| !numbers.is_empty()).ok_or_else(|| wrong(wanted))
     };
     Ok(match keyword {
         "newmtl" if rest.trim().is_empty() => return Err("'newmtl' has no name".to_owned()),
@@ -79,7 +118,7 @@ fn sound_line(line: &str) -> Result<String, String> {
             [red, green, blue, ..] => format!("{keyword} {red} {green} {blue}\n"),
             // One number stands for all three channels.
             [grey] => format!("{keyword} {grey} {grey} {grey}\n"),
-            _ => return Err(format!("'{line}' should be '{keyword}' and three numbers")),
+            _ => return Err(wrong("three numbers")),
         },
         "Ns" | "Ni" | "d" | "Tr" => format!("{keyword} {}\n", numbers("a number")?[0]),
         "illum" => format!("illum {}\n", numbers("a number")?[0] as u8),

@@ -13,8 +13,9 @@ use glam::{DVec3, Vec3};
 use super::{
     Draft, DraftTriangle, Material, SceneError,
     gltf::MAGIC as GLB_MAGIC,
-    load::{empty_draft, malformed, read_file},
-    mtl,
+    load::{empty_draft, malformed, read_file, text_of},
+    material::listed,
+    mtl::{Libraries, before_comment, number_words},
     polygon::triangulate,
 };
 
@@ -30,17 +31,17 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
             format!("this is no OBJ: byte {place} is 0, so it is no text"),
         ));
     }
-    let text = String::from_utf8_lossy(&bytes);
+    let text = text_of(&bytes);
     let text = join_continued(&text);
     let mut materials = Materials::default();
     let mut draft = empty_draft(path);
     draft.choose_surroundings = true;
     let vertices = read_vertices(path, &text, &mut materials, &mut draft)?;
     read_faces(path, &text, &vertices, &mut materials, &mut draft)?;
-    if materials.undefined > 0 {
+    if !materials.undefined.is_empty() {
         draft.notes.push(format!(
-            "{} materials are used but defined nowhere: plain grey",
-            materials.undefined
+            "used but defined nowhere, so plain grey: {}",
+            listed(&materials.undefined)
         ));
     }
     draft.materials = materials.list;
@@ -57,7 +58,9 @@ struct Vertices {
 struct Materials {
     list: Vec<Material>,
     by_name: HashMap<String, u32>,
-    undefined: usize,
+    /// The names that go on after a `#`, by what stands before it; none where there are several.
+    by_name_before_comment: HashMap<String, Option<String>>,
+    undefined: Vec<String>,
 }
 
 impl Materials {
@@ -68,10 +71,29 @@ impl Materials {
         index
     }
 
+    /// Adds what an MTL file defines.
+    fn define(&mut self, material: Material) {
+        let (name, short) = (&material.name, before_comment(&material.name));
+        if short != name {
+            let meant = self.by_name_before_comment.entry(short.to_owned());
+            let meant = meant.or_insert_with(|| Some(name.clone()));
+            if meant.as_ref() != Some(name) {
+                *meant = None;
+            }
+        }
+        self.add(material);
+    }
+
     /// The material of that name, made plain grey if there is none.
+    ///
+    /// Nothing tells a comment after a name from the `#` of names such as `Material #25`: so names are
+    /// looked for as they stand, then without what may be a comment, here and where they are defined.
     fn named(&mut self, name: &str) -> u32 {
-        self.by_name.get(name).copied().unwrap_or_else(|| {
-            self.undefined += 1;
+        let short = before_comment(name);
+        let commented = || self.by_name.get(self.by_name_before_comment.get(short)?.as_ref()?);
+        let found = self.by_name.get(name).or_else(|| self.by_name.get(short)).or_else(commented);
+        found.copied().unwrap_or_else(|| {
+            self.undefined.push(name.to_owned());
             self.add(Material { name: name.to_owned(), ..Material::default() })
         })
     }
@@ -122,9 +144,10 @@ fn read_vertices(
     draft: &mut Draft,
 ) -> Result<Vertices, SceneError> {
     let mut vertices = Vertices::default();
+    let mut libraries = Libraries::of(path);
     for (number, keyword, rest) in lines(text) {
         let vector = || {
-            let mut words = rest.split_whitespace().map(str::parse::<f64>);
+            let mut words = number_words(rest).map(str::parse::<f64>);
             match (words.next(), words.next(), words.next()) {
                 (Some(Ok(x)), Some(Ok(y)), Some(Ok(z))) => Ok(DVec3::new(x, y, z)),
                 _ => Err(malformed(
@@ -137,8 +160,8 @@ fn read_vertices(
             "v" => vertices.positions.push(vector()?),
             "vn" => vertices.normals.push(vector()?.as_vec3()),
             "mtllib" => {
-                for material in mtl::read_libraries(path, rest, draft) {
-                    materials.add(material);
+                for material in libraries.read(rest, draft) {
+                    materials.define(material);
                 }
             }
             _ => {}
@@ -164,7 +187,7 @@ fn read_faces(
             "usemtl" => material = Some(materials.named(rest.trim_end())),
             "f" => {
                 corners.clear();
-                for word in rest.split_whitespace().take_while(|word| !word.starts_with('#')) {
+                for word in number_words(rest) {
                     corners.push(
                         seen.corner(word, vertices).map_err(|problem| {
                             malformed(path, format!("line {number}: {problem}"))

@@ -63,7 +63,9 @@ use soundness::Step;
 use super::{
     Camera, Draft, DraftTriangle, Light, Material, SceneError, builtin,
     load::{empty_draft, is_mesh, malformed, read_file, read_mesh},
+    memory,
     placement::Placement,
+    polygon::triangulate,
 };
 
 #[derive(Deserialize)]
@@ -109,6 +111,16 @@ struct MeshEntry {
     rotate: [f64; 3],
     #[serde(default)]
     translate: [f64; 3],
+}
+
+impl MeshEntry {
+    /// Its triangles, unless they are in a file that has yet to be read.
+    fn known_triangles(&self) -> u64 {
+        let quads = self.quads.as_ref().map_or(0, Vec::len);
+        let triangles = self.triangles.as_ref().map_or(0, Vec::len);
+        let builtin = self.builtin.as_ref().and_then(|name| builtin::triangle_count(name, 1.0));
+        builtin.unwrap_or(0) + (2 * quads + triangles) as u64
+    }
 }
 
 fn unscaled() -> [f64; 3] {
@@ -160,8 +172,11 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
     for (name, material) in description.materials {
         draft.materials.push(Material { name, ..material });
     }
+    let own_materials = draft.materials.len();
+    let known = description.mesh.iter().map(MeshEntry::known_triangles).sum();
+    memory::check(known).map_err(|problem| malformed(path, problem))?;
     for (index, entry) in description.mesh.iter().enumerate() {
-        add_mesh(path, &mut draft, entry).map_err(|problem| {
+        add_mesh(path, &mut draft, own_materials, entry).map_err(|problem| {
             let line = soundness::line(&text, &[Step::Key("mesh"), Step::Element(index)]);
             malformed(path, format!("line {line}: mesh {}: {problem}", index + 1))
         })?;
@@ -188,12 +203,19 @@ fn light(entry: &LightEntry) -> Light {
     }
 }
 
-/// Adds a mesh, or says what is wrong with it.
-fn add_mesh(path: &Path, draft: &mut Draft, entry: &MeshEntry) -> Result<(), String> {
+/// Adds a mesh, or says what is wrong with it. The description's own materials are the first of the draft:
+/// it names no others.
+fn add_mesh(
+    path: &Path,
+    draft: &mut Draft,
+    own_materials: usize,
+    entry: &MeshEntry,
+) -> Result<(), String> {
     let own = match &entry.material {
         None => None,
         Some(name) => {
-            let place = draft.materials.iter().position(|material| material.name == *name);
+            let mut own = draft.materials[..own_materials].iter();
+            let place = own.position(|material| material.name == *name);
             Some(place.ok_or_else(|| format!("there is no [materials.{name}]"))? as u32)
         }
     };
@@ -210,15 +232,22 @@ fn add_mesh(path: &Path, draft: &mut Draft, entry: &MeshEntry) -> Result<(), Str
             builtin::draft_at(name, 1.0).map_err(|error| error.to_string())?
         }
         (None, None, Some(quads), None) => {
-            inline("quads", quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]))
+            let halves = |corners: &[[f64; 3]; 4]| {
+                let corners = corners.map(DVec3::from);
+                triangulate(&corners).into_iter().map(move |half| half.map(|at| corners[at]))
+            };
+            inline("quads", quads.iter().flat_map(halves))
         }
-        (None, None, None, Some(triangles)) => inline("triangles", triangles.iter().copied()),
+        (None, None, None, Some(triangles)) => {
+            inline("triangles", triangles.iter().map(|corners| corners.map(DVec3::from)))
+        }
         _ => return Err("give one of file, builtin, quads and triangles".to_owned()),
     };
     if mesh.triangles.is_empty() {
         // By itself it is no scene either: the same words say why.
         return mesh.finish().map(drop).map_err(|error| error.to_string());
     }
+    memory::check((draft.triangles.len() + mesh.triangles.len()) as u64)?;
     if !mesh.lights.is_empty() || mesh.camera.is_some() {
         draft.notes.push(format!("{}: its lights and camera are left out", mesh.name));
     }
@@ -245,13 +274,9 @@ fn add_mesh(path: &Path, draft: &mut Draft, entry: &MeshEntry) -> Result<(), Str
 }
 
 /// A mesh that is written in the description itself.
-fn inline(name: &str, triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Draft {
+fn inline(name: &str, triangles: impl Iterator<Item = [DVec3; 3]>) -> Draft {
     let triangles = triangles
-        .map(|corners| DraftTriangle {
-            corners: corners.map(DVec3::from),
-            normals: [Vec3::ZERO; 3],
-            material: 0,
-        })
+        .map(|corners| DraftTriangle { corners, normals: [Vec3::ZERO; 3], material: 0 })
         .collect();
     let name = name.to_owned();
     Draft { name, triangles, materials: vec![Material::default()], ..Draft::default() }

@@ -319,6 +319,61 @@ fn what_was_left_out_is_not_said_to_be_missing() {
 }
 
 #[test]
+fn surroundings_that_make_no_sense_are_left_out_and_chosen_instead() {
+    let plain = loaded(|_| {});
+    let sound = json!({ "ambient": [0, 0.5, 0], "background": [0, 0, 2], "exposure": 3 });
+    let with = |field: &str, value: Value| {
+        let mut umbra = sound.clone();
+        umbra[field] = value;
+        loaded(|document| document["scenes"][0]["extras"] = json!({ "umbra": umbra }))
+    };
+    let told = |scene: &Scene, words: &str| scene.notes.iter().any(|note| note == words);
+    let scene = with("exposure", json!(3));
+    assert_eq!((scene.ambient, scene.exposure), (Vec3::new(0.0, 0.5, 0.0), Some(3.0)));
+    for exposure in [json!(-2), json!(0), json!(1e39)] {
+        let scene = with("exposure", exposure);
+        assert_eq!((scene.exposure, scene.background), (None, Vec3::new(0.0, 0.0, 2.0)));
+        assert!(told(&scene, "left out an exposure that makes no sense"), "{:?}", scene.notes);
+    }
+    for (field, value) in [("ambient", json!([0, -1, 0])), ("background", json!([1e39, 0, 0]))] {
+        let scene = with(field, value);
+        assert_eq!((scene.ambient, scene.background), (plain.ambient, plain.background));
+        let words = "left out an ambient light and a background whose numbers make no sense";
+        assert!(told(&scene, words), "{:?}", scene.notes);
+    }
+}
+
+#[test]
+fn numbers_of_materials_that_make_no_sense_are_clamped_with_a_note() {
+    let clamped = |material: Value| {
+        let scene = loaded(|document| {
+            document["materials"] = json!([material]);
+            document["meshes"][0]["primitives"][0]["material"] = json!(0);
+        });
+        let told = "clamped the numbers that make no sense of material 'x'";
+        assert!(scene.notes.iter().any(|note| note == told), "{:?}", scene.notes);
+        scene.material(0).clone()
+    };
+    let dark = clamped(json!({ "name": "x", "emissiveFactor": [-1, 0, 0.5] }));
+    assert_eq!(dark.emission, Vec3::new(0.0, 0.0, 0.5));
+    let bright = clamped(json!({
+        "name": "x",
+        "emissiveFactor": [1, 0, 0],
+        "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 1e39 } },
+    }));
+    assert_eq!(bright.emission, Vec3::new(f32::MAX, 0.0, 0.0));
+    let umbra = json!({
+        "diffuse": [-1, 2, 0], "reflection": [1.5, 0, 0], "transmission": [-0.5, 0, 0],
+        "refraction_index": 0, "shininess": -1, "highlight": [0, 1e39, 0],
+    });
+    let own = clamped(json!({ "name": "x", "extras": { "umbra": umbra } }));
+    assert_eq!((own.diffuse, own.reflection), (Vec3::new(0.0, 2.0, 0.0), Vec3::X));
+    assert!(!own.is_transparent());
+    assert_eq!((own.refraction_index, own.shininess), (1.0, 0.0));
+    assert_eq!(own.highlight, Vec3::new(0.0, f32::MAX, 0.0));
+}
+
+#[test]
 fn corners_beyond_the_last_whole_triangle_are_noted() {
     let scene = loaded(|document| document["accessors"][1]["count"] = json!(4));
     let told = "a primitive has 4 corners, not three for each triangle: the last 1 are left out";

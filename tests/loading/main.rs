@@ -2,6 +2,7 @@
 
 mod damaged_gltf;
 mod gltf;
+mod mtl;
 mod obj;
 mod sensible;
 mod toml;

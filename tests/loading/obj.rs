@@ -97,6 +97,29 @@ fn tabs_windows_lines_comments_and_unknown_keywords_do_no_harm() {
 }
 
 #[test]
+fn a_comment_may_follow_a_number_at_once() {
+    let files = Files::new();
+    files.write("a.mtl", "newmtl red\nKd 1 0 0#a\nd 0.5# b\n");
+    let text = "mtllib a.mtl\nusemtl red\nv 0 0 0#a\nv 1 0 0# b\nv 0 1 0 #c\nvn 0 0 1#d\nf 1//1 2//1 3//1#e\n";
+    let scene = files.write("a.obj", text).load("a.obj").expect("a sound file");
+    assert_eq!(scene.normals, [[Vec3::Z; 3]]);
+    assert_eq!(scene.material(0).diffuse, Vec3::new(0.5, 0.0, 0.0));
+}
+
+#[test]
+fn lines_may_end_as_on_an_old_macintosh() {
+    let files = Files::new();
+    let text = format!("# a\nmtllib a.mtl\n{SQUARE}usemtl red\nf 1 2 \\\n 3\r\nf 1 3 4\nf 1 2 x\n");
+    let (sound, _) = text.rsplit_once("f 1 2 x").expect("a last line");
+    files.write("a.mtl", "newmtl red\rKd 1 0 0\r");
+    let scene =
+        files.write("a.obj", sound.replace('\n', "\r")).load("a.obj").expect("a sound file");
+    assert_eq!((scene.triangles.len(), scene.material(1).diffuse), (2, Vec3::X));
+    let message = refusal("a.obj", text.replace('\n', "\r"));
+    assert_eq!(message, "a.obj: line 12: 'x' is not a corner of a face");
+}
+
+#[test]
 fn normals_are_kept_where_all_three_are_sound() {
     let normals = "vn 0 0 1\nvn 0 1 0\nvn 0 0 0\nvn nan 0 0\n";
     let scene = square(&format!(
@@ -211,7 +234,7 @@ fn lines_of_an_mtl_that_cannot_be_read_are_noted_once_with_their_line() {
     assert_eq!(
         notes,
         [
-            "material file 'a.mtl', line 3: 'Kd a b c' should be 'Kd' and three numbers; it is left out, and so are 2 other lines"
+            "material file 'a.mtl', line 3: 'Kd a b c' should be 'Kd' and three numbers within ±3.4e38; it is left out, and so are 2 other lines"
         ]
     );
     assert!(noted("newmtl red\nKd 1 0 0 # red\nd 1\nKs 0.5\nmap_Kd x\n").is_empty());

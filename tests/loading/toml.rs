@@ -1,7 +1,11 @@
 //! Scene descriptions.
 
 use glam::{DVec3, Vec3};
-use umbra::scene::{Light, load};
+use umbra::{
+    geometry::Ray,
+    occlusion::{Backend, BuildOptions, Tally, build},
+    scene::{Light, load},
+};
 
 use super::{Files, corners, refusal, scene};
 
@@ -188,4 +192,60 @@ fn numbers_that_make_no_sense_are_refused_with_their_line_and_field() {
 fn a_camera_may_look_along_the_up_that_it_was_not_given() {
     let text = format!("{TRIANGLE}[camera]\nposition = [0, 5, 0]\ntarget = [0, 0, 0]\n");
     assert_eq!(scene("a.toml", text).camera.forward, DVec3::NEG_Y);
+}
+
+#[test]
+fn a_concave_quad_blocks_what_it_covers_and_nothing_else() {
+    let arrow = ["[2, 0, 0]", "[0.5, 0.5, 0]", "[0, 2, 0]", "[0, 0, 0]"];
+    for start in 0..4 {
+        let mut corners = arrow;
+        corners.rotate_left(start);
+        let scene = scene("a.toml", format!("[[mesh]]\nquads = [[{}]]\n", corners.join(", ")));
+        let (backend, options) = (Backend::Brute, BuildOptions::default());
+        let engine = build(backend, backend.default_test(), &scene.triangles, &options).unwrap();
+        let blocks = |x: f32, y: f32| {
+            let ray = Ray::between(Vec3::new(x, y, 1.0), Vec3::new(x, y, -1.0));
+            engine.occluded(&ray, &mut Tally::default())
+        };
+        assert_eq!(scene.triangles.len(), 2);
+        for (x, y, is_within) in [
+            (0.8, 0.8, false),
+            (0.6, 0.6, false),
+            (0.3, 0.2, true),
+            (1.5, 0.1, true),
+            (0.1, 1.5, true),
+        ] {
+            assert_eq!(blocks(x, y), is_within, "from corner {start}: ({x}, {y})");
+        }
+    }
+}
+
+#[test]
+fn materials_are_those_of_the_description_whatever_the_meshes_bring() {
+    let files = Files::new();
+    files.write("a.mtl", "newmtl red\nKd 1 0 0\n");
+    files.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+    let (file, own) = ("[[mesh]]\nfile = \"a.obj\"\n", format!("{TRIANGLE}material = \"red\"\n"));
+    for (text, line) in [(format!("{file}{own}"), 3), (format!("{own}{file}"), 1)] {
+        files.write("a.toml", &text);
+        let message = files.refusal("a.toml");
+        let told = format!("a.toml: line {line}: mesh ");
+        assert!(message.starts_with(&told), "{message}");
+        assert!(message.ends_with(": there is no [materials.red]"), "{message}");
+        files.write("a.toml", format!("{text}[materials.red]\ndiffuse = [0.5, 0, 0]\n"));
+        let scene = files.load("a.toml").expect("a sound file");
+        let mut reds = [0, 1].map(|id| scene.material(id).diffuse.x);
+        reds.sort_by(f32::total_cmp);
+        assert_eq!(reds, [0.5, 1.0], "one of each");
+    }
+}
+
+#[test]
+fn more_triangles_than_can_be_held_are_refused_before_they_are_made() {
+    let count = umbra::scene::builtin::triangle_count("jittered-dense", 1.0).expect("a name");
+    let meshes = usize::try_from((1 << 32) / count + 1).expect("a small number");
+    let text = "[[mesh]]\nbuiltin = \"jittered-dense\"\n".repeat(meshes);
+    let message = refusal("a.toml", text);
+    let told = format!("a.toml: {} triangles are too many; ", count * meshes as u64);
+    assert!(message.starts_with(&told), "{message}");
 }

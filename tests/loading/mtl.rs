@@ -1,0 +1,89 @@
+//! Which MTL files an OBJ file reads, and which of their materials its names find.
+
+use glam::Vec3;
+use umbra::scene::Scene;
+
+use super::Files;
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+/// One triangle for each line of an OBJ file beside `a.mtl`.
+fn used(mtl: &str, lines: &[&str]) -> Scene {
+    let faces: String = lines.iter().map(|line| format!("{line}\nf 1 2 3\n")).collect();
+    let files = Files::new();
+    files.write("a.mtl", mtl).write("a.obj", format!("{TRIANGLE}{faces}"));
+    files.load("a.obj").expect("a sound file")
+}
+
+fn diffuse<const COUNT: usize>(scene: &Scene) -> [Vec3; COUNT] {
+    std::array::from_fn(|id| scene.material(id as u32).diffuse)
+}
+
+#[test]
+fn a_comment_after_a_name_is_no_part_of_it() {
+    let mtl = "newmtl red # first\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n";
+    let lines = ["mtllib a.mtl # of this file\nusemtl red", "usemtl blue\t# sky", "usemtl red #1"];
+    let scene = used(mtl, &lines);
+    assert_eq!(diffuse(&scene), [Vec3::X, Vec3::Z, Vec3::X]);
+    assert!(!scene.notes.iter().any(|note| note.contains("mtl")), "{:?}", scene.notes);
+}
+
+#[test]
+fn a_name_that_is_defined_with_a_number_sign_is_taken_whole() {
+    let mtl =
+        "newmtl Material #25\nKd 1 0 0\nnewmtl Material #26\nKd 0 1 0\nnewmtl a#b\nKd 0 0 1\n";
+    let lines = ["mtllib a.mtl\nusemtl Material #25", "usemtl Material #26", "usemtl a#b"];
+    assert_eq!(diffuse(&used(mtl, &lines)), [Vec3::X, Vec3::Y, Vec3::Z]);
+    // Neither of two is the one that is meant.
+    let scene = used(mtl, &["mtllib a.mtl\nusemtl Material #27"]);
+    assert_eq!(diffuse(&scene), [Vec3::splat(0.7)]);
+    assert!(scene.notes.iter().any(|note| note.contains("'Material #27'")), "{:?}", scene.notes);
+}
+
+#[test]
+fn of_the_words_of_a_comment_none_is_a_file_that_is_missing() {
+    let scene = used("", &["mtllib lost.mtl # see the other folder"]);
+    let missing: Vec<_> = scene.notes.iter().filter(|note| note.contains("read")).collect();
+    assert_eq!(missing, ["material file 'lost.mtl' cannot be read: plain grey instead"]);
+}
+
+#[test]
+fn materials_that_are_used_but_not_defined_are_named() {
+    let noted = |count: usize| {
+        let lines: Vec<String> = (1..=count).map(|number| format!("usemtl m{number}")).collect();
+        let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
+        let scene = used("", &[&lines[..], &["usemtl m1"]].concat());
+        let mut notes = scene.notes.into_iter().filter(|note| note.contains("defined nowhere"));
+        notes.next().expect("a note")
+    };
+    let told = "used but defined nowhere, so plain grey: ";
+    assert_eq!(noted(1), format!("{told}material 'm1'"));
+    assert_eq!(noted(2), format!("{told}materials 'm1', 'm2'"));
+    assert_eq!(noted(7), format!("{told}materials 'm1', 'm2', 'm3', 'm4' and 3 more"));
+}
+
+#[test]
+fn a_file_that_is_named_again_is_read_once_and_missing_once() {
+    let files = Files::new();
+    files.write("a.mtl", "newmtl red\nKd 1 0 0\n").write("b.mtl", "newmtl blue\nKd 0 0 1\nKs x\n");
+    let lines = "mtllib a.mtl b.mtl\nmtllib lost.mtl\nmtllib lost.mtl a.mtl\nmtllib b.mtl\n";
+    let text = format!("{TRIANGLE}{}usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n", lines.repeat(3));
+    let scene = files.write("a.obj", text).load("a.obj").expect("a sound file");
+    assert_eq!(diffuse(&scene), [Vec3::X, Vec3::Z]);
+    assert_eq!(scene.materials.len(), 2);
+    assert_eq!(scene.files, ["a.obj", "a.mtl", "b.mtl"].map(|name| files.path(name)));
+    for words in ["'lost.mtl' cannot be read", "file 'b.mtl', line 3"] {
+        let count = scene.notes.iter().filter(|note| note.contains(words)).count();
+        assert_eq!(count, 1, "{:?}", scene.notes);
+    }
+}
+
+#[test]
+fn numbers_beyond_single_precision_are_left_out_with_their_line() {
+    let mtl = "newmtl lamp\nKe 1e39 0 0\nNs -1e39\nKd 1 0 0\n";
+    let scene = used(mtl, &["mtllib a.mtl\nusemtl lamp"]);
+    assert_eq!((scene.material(0).emission, scene.material(0).diffuse), (Vec3::ZERO, Vec3::X));
+    let told = "line 2: 'Ke 1e39 0 0' should be 'Ke' and three numbers within ±3.4e38; it is left \
+                out, and so is 1 other line";
+    assert!(scene.notes.iter().any(|note| note.ends_with(told)), "{:?}", scene.notes);
+}
