@@ -170,6 +170,11 @@ fn without_memory_nothing_is_prepared_and_that_is_said() {
     assert_eq!(auto.memory(), 0);
     let notes: Vec<String> = auto.verdicts().into_iter().flat_map(|report| report.notes).collect();
     assert!(notes.iter().any(|note| note.contains("steps aside")), "{notes:?}");
+    let choices = auto.choices();
+    let shares = choices.iter().flat_map(|light| &light.candidates);
+    for share in shares.filter(|share| share.method.contains("shaft") && share.queries > 0) {
+        assert!(share.reason.starts_with("steps aside"), "{share:?}");
+    }
 }
 
 /// A floor with lights above it, and many below, where it does not face.

@@ -29,7 +29,7 @@ pub(super) struct SceneFile {
     /// The file to write: .obj or .glb
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// How many times the triangles of the paper's scene: 0.01 to 100
+    /// About how many times the triangles of the paper's scene, as far as surfaces allow: 0.01 to 100
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = finite::<f64>)]
     tessellation: f64,
     /// Writes all counts as JSON

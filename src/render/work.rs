@@ -18,8 +18,8 @@ use crate::scene::Scene;
 /// of the whole.
 const STRIDE: u32 = 32;
 
-/// A tile is cut into four if it is so many times as dear as the mean of all.
-const DEAR: f64 = 2.0;
+/// A tile is cut into four if it takes more than this share of all work: what a tile asks is answered together, so the larger, the better.
+const DEAR: f64 = 1.0 / 40.0;
 
 /// A ray of a mirror or of glass takes so many times as long as one from the eye, with what is asked where it ends: neighbours go apart, and
 /// meet small things. It is 1 to 4 in the drum, 2 in the chair room, 3 in the staircase; the tiles that take longest have most of them.
@@ -53,12 +53,11 @@ impl Units {
             some.map(|&pixel| cost_of(small.rays_at(pixel, settings))).sum()
         };
         let all: u64 = whole.par_iter().map(|pixels| cost(pixels)).sum();
-        let mean = all as f64 / whole.len() as f64;
-        let times_mean = |pixels: &[Place]| cost(pixels) as f64 / mean;
+        let share = |pixels: &[Place]| cost(pixels) as f64 / all as f64;
         let pixels: Vec<Vec<Place>> =
-            whole.into_par_iter().flat_map_iter(|pixels| cut(pixels, &times_mean)).collect();
-        // In halves of the mean: neighbours stay together otherwise, as they come to the same triangles.
-        let class = |pixels: &Vec<Place>| (2.0 * times_mean(pixels)) as u32;
+            whole.into_par_iter().flat_map_iter(|pixels| cut(pixels, &share)).collect();
+        // By quarters of what is cut: neighbours stay together otherwise, as they come to the same triangles.
+        let class = |pixels: &Vec<Place>| (4.0 * share(pixels) / DEAR) as u32;
         let classes: Vec<u32> = pixels.par_iter().map(class).collect();
         let mut order: Vec<usize> = (0..pixels.len()).collect();
         order.sort_by_key(|&unit| Reverse(classes[unit]));
@@ -72,12 +71,12 @@ fn cost_of(rays: &RayCounts) -> u64 {
 }
 
 /// Cuts what is dear into quarters of the curve that goes through its pixels: those of a square are squares.
-fn cut(pixels: Vec<Place>, times_mean: &impl Fn(&[Place]) -> f64) -> Vec<Vec<Place>> {
-    if pixels.len() <= LEAST || times_mean(&pixels) < DEAR {
+fn cut(pixels: Vec<Place>, share: &impl Fn(&[Place]) -> f64) -> Vec<Vec<Place>> {
+    if pixels.len() <= LEAST || share(&pixels) < DEAR {
         return vec![pixels];
     }
     let quarters = pixels.chunks(pixels.len().div_ceil(4));
-    quarters.flat_map(|quarter| cut(quarter.to_vec(), times_mean)).collect()
+    quarters.flat_map(|quarter| cut(quarter.to_vec(), share)).collect()
 }
 
 #[cfg(test)]

@@ -49,6 +49,16 @@ impl<'a> Stock<'a> {
         (clusters.clone(), bytes)
     }
 
+    /// What the user should know where there are no clusters.
+    pub fn without_clusters(&self) -> String {
+        let [a_triangle, besides] = CLUSTER_BYTES;
+        let bytes = a_triangle * self.scene.triangles.opaque_count() as usize + besides;
+        let advice = self.budget.advice(bytes as u64);
+        format!(
+            "steps aside: the memory limit leaves too little for the triangles' clusters; {advice}"
+        )
+    }
+
     /// Clusters of so many triangles, if the memory suffices.
     fn within_budget(
         &self,

@@ -4,7 +4,9 @@ use std::sync::OnceLock;
 
 use super::policy::Prices;
 use crate::occlusion::{Occlusion, Test};
-use crate::shadow::{Combination, Method, Prepared, SelfShadow, VerdictKind, VerdictSet};
+use crate::shadow::{
+    Combination, Method, Prepared, SelfShadow, VerdictKind, VerdictReport, VerdictSet,
+};
 
 /// Nanoseconds a triangle to group triangles into clusters, of all threads together: 100 to 190 (docs/growth.md).
 const CLUSTERS: f64 = 180.0;
@@ -30,6 +32,13 @@ impl Candidate<'_> {
     /// Whether it needs the triangles' clusters.
     pub fn needs_clusters(&self) -> bool {
         !self.combination.verdicts.is_empty()
+    }
+
+    /// Whether it is prepared, but has no memory for any of its verdicts.
+    pub fn steps_aside(&self) -> bool {
+        let reports = self.prepared.get().map(|prepared| prepared.verdicts()).unwrap_or_default();
+        let is_nothing = |report: &VerdictReport| report.bytes == 0 && !report.notes.is_empty();
+        !reports.is_empty() && reports.iter().all(is_nothing)
     }
 
     /// What it is expected to take before it answers the first query, over so many triangles in a backend.

@@ -85,6 +85,7 @@ impl Uses {
                             trials,
                             nanoseconds_a_query: cost,
                             reason: Why {
+                                steps_aside: candidates[candidate].steps_aside(),
                                 led: queries - trials.min(queries),
                                 trials,
                                 cost,
@@ -113,6 +114,8 @@ fn cheapest(policy: &Policy, light: usize, counts: &[[AtomicU64; 2]]) -> Option<
 
 /// Why a candidate was asked, or not.
 struct Why {
+    /// Whether it has no memory for what it would prepare, so that the engine answers in its place.
+    steps_aside: bool,
     /// Queries that it answered because it led, and in trials.
     led: u64,
     trials: u64,
@@ -126,6 +129,9 @@ impl fmt::Display for Why {
         let Self { led, trials, cheapest, hindrance, .. } = *self;
         let milliseconds = |nanoseconds: f64| nanoseconds / 1e6;
         match (self.cost, hindrance) {
+            (Some(cost), _) if self.steps_aside => {
+                write!(f, "steps aside, so the engine answers: {cost:.0} ns a query")
+            }
             (Some(cost), _) if led > 0 && cheapest => write!(f, "cheapest: {cost:.0} ns a query"),
             (Some(cost), _) if led > 0 => {
                 write!(f, "cheapest at first, or in places: {cost:.0} ns a query")

@@ -43,6 +43,8 @@ pub(super) struct LightBuffer {
     lights: Vec<Light>,
     /// None if the memory does not suffice.
     clusters: Option<Arc<Clusters>>,
+    /// What is said then.
+    aside: Option<String>,
     maps: Vec<OnceLock<Option<LightMap>>>,
     arithmetic: Arithmetic,
     budget: Arc<Budget>,
@@ -64,6 +66,7 @@ impl LightBuffer {
         Self {
             triangles: scene.triangles.clone(),
             lights: scene.lights.clone(),
+            aside: clusters.is_none().then(|| stock.without_clusters()),
             clusters,
             maps: scene.lights.iter().map(|_| OnceLock::new()).collect(),
             arithmetic: Arithmetic::of_this_cpu(),
@@ -190,14 +193,11 @@ impl Verdict for LightBuffer {
     fn notes(&self) -> Vec<String> {
         let refused = self.refused.load(Relaxed);
         let mut notes = Vec::new();
-        if self.clusters.is_none() {
-            notes.push(
-                "light-buffer steps aside: the memory does not hold the triangles' clusters"
-                    .to_owned(),
-            );
+        if let Some(aside) = &self.aside {
+            notes.push(aside.clone());
         } else if refused > 0 {
             let advice = self.budget.advice(self.refused_bytes.load(Relaxed));
-            notes.push(format!("light-buffer leaves {refused} parts of what lights see to the backend: they do not fit into the memory; {advice}"));
+            notes.push(format!("leaves {refused} parts of what lights see to the backend: they do not fit into the memory; {advice}"));
         }
         notes
     }

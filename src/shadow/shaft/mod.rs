@@ -58,6 +58,8 @@ pub(super) struct Shafts {
     sources: Vec<Source>,
     /// None if the memory does not suffice.
     clusters: Option<Arc<Clusters>>,
+    /// What is said then.
+    aside: Option<String>,
     /// Bytes of them, if nobody else counts them.
     bytes: usize,
     /// Shafts among the transparent triangles, if there are any.
@@ -89,6 +91,7 @@ impl Shafts {
         glass: Option<Box<Self>>,
     ) -> Self {
         Self {
+            aside: clusters.is_none().then(|| stock.without_clusters()),
             triangles: stock.scene.triangles.clone(),
             sources: stock.scene.lights.iter().map(Source::new).collect(),
             clusters,
@@ -172,10 +175,7 @@ impl Verdict for Shafts {
     }
 
     fn notes(&self) -> Vec<String> {
-        let missing = self.clusters.is_none().then(|| {
-            "shaft steps aside: the memory does not hold the triangles' clusters".to_owned()
-        });
-        missing.into_iter().collect()
+        self.aside.iter().cloned().collect()
     }
 }
 
