@@ -1,7 +1,7 @@
 //! Contenders that answer the shadow queries of a picture in turns.
 //!
 //! In each round every contender is prepared from nothing, asked once, and asked again; medians of the rounds count.
-//! Units of the picture are asked as the renderer asks them, each by a worker of its own. In one thread, time is that
+//! Units of the picture are asked as the renderer cuts them, each by a worker of its own, along the curve through the picture. In one thread, time is that
 //! of its processor, so that other programs disturb little; with several, it is that of the clock on the wall.
 
 use std::time::Instant;

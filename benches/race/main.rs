@@ -31,7 +31,7 @@ use common::{REAL_SCENES, lights, path_of};
 use racers::{Built, Racer, Ready, least};
 use table::{Figures, Outcome};
 use umbra::occlusion::{Backend, BuildOptions, Occlusion, Test, build};
-use umbra::render::{RecordedQuery, Settings, record};
+use umbra::render::{Settings, record};
 use umbra::scene::{Scene, builtin, load};
 use umbra::shadow::Trace;
 
@@ -130,15 +130,15 @@ fn race(scene: &Scene, samples: u32, every: usize) -> Outcome {
     let mut racers: Vec<Racer> = embrees.iter().flat_map(Built::racers).collect();
     racers.extend(ours.iter().map(Ready::racer));
 
-    let mut part: Vec<RecordedQuery> = Vec::new();
+    let mut part: Vec<Run> = Vec::new();
+    let count_of = |runs: &[Run]| runs.iter().map(|run| run.queries.len()).sum::<usize>();
     let (mut tile, mut all, mut asked, mut turn) = (0, 0, 0, 0);
-    let mut run = |part: &mut Vec<RecordedQuery>| {
-        let runs = Run::all(part);
+    let mut run = |part: &mut Vec<Run>| {
         let count = racers.len();
         for place in 0..count {
-            racers[(place + turn) % count].run(&runs);
+            racers[(place + turn) % count].run(part);
         }
-        asked += part.len();
+        asked += count_of(part);
         turn += 1;
         part.clear();
     };
@@ -147,9 +147,9 @@ fn race(scene: &Scene, samples: u32, every: usize) -> Outcome {
         all += unit.len();
         tile += 1;
         if tile % every == 0 {
-            part.extend(unit);
+            part.extend(Run::all(&unit));
         }
-        if part.len() >= PART {
+        if count_of(&part) >= PART {
             run(&mut part);
         }
     });

@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::shadow::{Answer, Prepared, ShadowQuery, ShadowTally, Shadows};
 
 /// Pixels of the picture to one of the small one, along each side: a thousandth of all pixels is looked at.
-const STRIDE: u32 = 32;
+pub(super) const STRIDE: u32 = 32;
 
 /// About how many shadow queries a render will ask.
 #[must_use]

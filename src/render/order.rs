@@ -35,7 +35,7 @@ impl Order {
         self == Self::Tiles
     }
 
-    /// The pixels of each unit, in the order in which they are rendered; `samples` of them along a pixel's side.
+    /// The pixels of each unit before dear ones are cut, in the order in which they are rendered; `samples` of them along a pixel's side.
     #[must_use]
     pub fn units(
         self,

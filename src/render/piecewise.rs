@@ -44,7 +44,7 @@ pub struct Pieces {
 }
 
 impl<'a> Piecewise<'a> {
-    /// Nothing is rendered yet. One of every so many scanlines, or tiles, will be.
+    /// Nothing is rendered yet. One of every so many scanlines will be, or of tiles (dear ones are cut and come first, as in a render).
     ///
     /// # Errors
     /// If the settings make no picture.

@@ -75,9 +75,9 @@ pub enum SettingsError {
 }
 
 impl Settings {
-    /// The pixels of each unit of work.
+    /// The pixels of each unit of work, before dear ones are cut.
     #[must_use]
-    pub fn units(&self) -> Vec<Vec<Place>> {
+    pub(super) fn units(&self) -> Vec<Vec<Place>> {
         self.order.units([self.width, self.height], self.rows_per_unit, self.samples)
     }
 

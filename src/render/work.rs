@@ -8,15 +8,11 @@ use std::cmp::Reverse;
 
 use rayon::prelude::*;
 
-use super::forecast::Small;
+use super::forecast::{STRIDE, Small};
 use super::order::Place;
 use super::{RayCounts, Settings};
 use crate::occlusion::Occlusion;
 use crate::scene::Scene;
-
-/// Pixels of the picture to one of the small one, along each side, at one sample a pixel; half of it at more. It takes some thousandths
-/// of the whole.
-const STRIDE: u32 = 32;
 
 /// A tile is cut into four if it takes more than this share of all work: what a tile asks is answered together, so the larger, the better.
 const DEAR: f64 = 1.0 / 40.0;
@@ -47,6 +43,7 @@ impl Units {
             let order = (0..whole.len()).collect();
             return Self { pixels: whole, order };
         }
+        // At one sample a pixel the look takes some thousandths of the whole; at more, more can be looked at.
         let small = Small::of(scene, backend, settings, STRIDE / settings.samples.min(2));
         let cost = |pixels: &[Place]| -> u64 {
             let some = pixels.iter().step_by(LOOKED_AT);

@@ -219,7 +219,8 @@ impl Draft {
         if !is_colour(self.ambient) || !is_colour(self.background) {
             self.choose_surroundings = true;
             self.notes.push(
-                "left out an ambient light and a background whose numbers make no sense".to_owned(),
+                "left out the ambient light and the background: the numbers of one make no sense"
+                    .to_owned(),
             );
         }
         if self.exposure.is_some_and(|factor| !(factor > 0.0 && factor.is_finite())) {

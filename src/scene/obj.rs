@@ -87,11 +87,19 @@ impl Materials {
     /// The material of that name, made plain grey if there is none.
     ///
     /// Nothing tells a comment after a name from the `#` of names such as `Material #25`: so names are
-    /// looked for as they stand, then without what may be a comment, here and where they are defined.
+    /// looked for as they stand, then without what may be a comment, here or where they are defined; on both sides only where
+    /// white space follows the `#`, lest `Material #26` be `Material #25`.
     fn named(&mut self, name: &str) -> u32 {
         let short = before_comment(name);
-        let commented = || self.by_name.get(self.by_name_before_comment.get(short)?.as_ref()?);
-        let found = self.by_name.get(name).or_else(|| self.by_name.get(short)).or_else(commented);
+        let after = name[short.len()..].trim_start().strip_prefix('#').unwrap_or_default();
+        let is_number = after.starts_with(|first: char| !first.is_whitespace());
+        let commented = || {
+            let defined = self.by_name_before_comment.get(short).filter(|_| !is_number);
+            self.by_name.get(defined?.as_ref()?)
+        };
+        let shortened =
+            || if short.is_empty() { None } else { self.by_name.get(short).or_else(commented) };
+        let found = self.by_name.get(name).or_else(shortened);
         found.copied().unwrap_or_else(|| {
             self.undefined.push(name.to_owned());
             self.add(Material { name: name.to_owned(), ..Material::default() })

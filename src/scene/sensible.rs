@@ -26,7 +26,8 @@ const SUN: f32 = 3.0;
 /// one open side, from there; at a closed room, from within.
 pub(super) fn add_camera(scene: &mut Scene, up: Option<DVec3>) {
     let bounds = scene.bounds();
-    let up = up.unwrap_or(if is_flat(&bounds, DVec3::Z) { DVec3::Z } else { DVec3::Y });
+    let chosen = if is_flat(&bounds, DVec3::Z) { DVec3::Z } else { DVec3::Y };
+    let up = up.and_then(DVec3::try_normalize).unwrap_or(chosen);
     let walls = Walls::of(scene);
     let (camera, what) = if walls.close_a_room() {
         (walls.corner_view(scene, up), "looks about the closed room from a corner")

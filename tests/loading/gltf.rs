@@ -338,7 +338,8 @@ fn surroundings_that_make_no_sense_are_left_out_and_chosen_instead() {
     for (field, value) in [("ambient", json!([0, -1, 0])), ("background", json!([1e39, 0, 0]))] {
         let scene = with(field, value);
         assert_eq!((scene.ambient, scene.background), (plain.ambient, plain.background));
-        let words = "left out an ambient light and a background whose numbers make no sense";
+        let words =
+            "left out the ambient light and the background: the numbers of one make no sense";
         assert!(told(&scene, words), "{:?}", scene.notes);
     }
 }

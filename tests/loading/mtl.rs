@@ -22,7 +22,8 @@ fn diffuse<const COUNT: usize>(scene: &Scene) -> [Vec3; COUNT] {
 #[test]
 fn a_comment_after_a_name_is_no_part_of_it() {
     let mtl = "newmtl red # first\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n";
-    let lines = ["mtllib a.mtl # of this file\nusemtl red", "usemtl blue\t# sky", "usemtl red #1"];
+    let lines =
+        ["mtllib a.mtl # of this file\nusemtl red", "usemtl blue\t# sky", "usemtl red # again"];
     let scene = used(mtl, &lines);
     assert_eq!(diffuse(&scene), [Vec3::X, Vec3::Z, Vec3::X]);
     assert!(!scene.notes.iter().any(|note| note.contains("mtl")), "{:?}", scene.notes);
@@ -38,6 +39,12 @@ fn a_name_that_is_defined_with_a_number_sign_is_taken_whole() {
     let scene = used(mtl, &["mtllib a.mtl\nusemtl Material #27"]);
     assert_eq!(diffuse(&scene), [Vec3::splat(0.7)]);
     assert!(scene.notes.iter().any(|note| note.contains("'Material #27'")), "{:?}", scene.notes);
+    // Nor is the one that there is.
+    let scene = used(
+        "newmtl Material #25\nKd 1 0 0\n",
+        &["mtllib a.mtl\nusemtl Material #26", "usemtl #2"],
+    );
+    assert_eq!(diffuse(&scene), [Vec3::splat(0.7); 2]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use umbra::scene::{Light, Scene};
 
-use super::scene;
+use super::{Files, scene};
 
 /// A box in OBJ, its faces seen from outside or from within.
 fn cuboid(min: DVec3, max: DVec3, is_seen_from_within: bool) -> String {
@@ -64,5 +64,21 @@ fn a_solid_is_seen_from_outside_whatever_is_in_it_and_so_is_an_empty_box() {
         assert!(notes_say(&solid, "sees the whole scene"), "{:?}", solid.notes);
         assert!(!is_within(&solid, solid.camera.position));
         assert!(matches!(solid.lights[..], [Light::Directional { .. }]));
+    }
+}
+
+#[test]
+fn the_length_and_the_slant_of_up_move_nobody_out_of_a_room() {
+    let mut text = cuboid(DVec3::ZERO, DVec3::new(4.0, 3.0, 6.0), true);
+    text += &cuboid(DVec3::new(2.4, 0.01, 3.6), DVec3::new(3.7, 2.0, 5.6), false);
+    let files = Files::new();
+    files.write("room.obj", text);
+    for up in ["[0, 5, 0]", "[0, 0.1, 0]", "[0, 1, 0.9]", "[0.3, 1, 0.2]"] {
+        files.write("room.toml", format!("up = {up}\n[[mesh]]\nfile = \"room.obj\"\n"));
+        let room = files.load("room.toml").expect("a sound file");
+        let eye = room.camera.position + room.origin;
+        assert!(is_within(&room, room.camera.position), "{up}: {eye}");
+        assert!(eye.x < 1.0 && eye.z < 1.5 && eye.y > 1.5, "{up}: {eye}");
+        assert!(matches!(room.lights[..], [Light::Point { .. }]), "{up}");
     }
 }

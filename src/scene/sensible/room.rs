@@ -91,14 +91,22 @@ impl Walls {
         (point - self.bounds.centre()).abs().cmplt(0.5 * self.bounds.extent().as_dvec3()).all()
     }
 
+    /// The side that a direction points to most.
+    fn nearest_side(&self, direction: DVec3) -> DVec3 {
+        let sides = self.covered.iter().map(|&(side, _)| side);
+        let nearest = sides.max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction)));
+        nearest.unwrap_or(DVec3::Y)
+    }
+
     /// Looks at the middle from that corner which is farthest from all that stands in the room.
     pub fn corner_view(&self, scene: &Scene, up: DVec3) -> Camera {
         let centre = self.bounds.centre();
         let half = 0.5 * self.bounds.extent().as_dvec3();
-        let across = up.any_orthonormal_vector().abs();
-        let along = up.cross(across);
+        let ceiling = self.nearest_side(up);
+        let across = ceiling.any_orthonormal_vector();
+        let along = ceiling.cross(across);
         let place = |(a, b): (f64, f64)| {
-            centre + half * (TOWARDS_CORNER * (a * across + b * along) + EYE_HEIGHT * up)
+            centre + half * (TOWARDS_CORNER * (a * across + b * along) + EYE_HEIGHT * ceiling)
         };
         let places = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(place);
         let mut space = [f64::INFINITY; 4];
@@ -119,11 +127,7 @@ impl Walls {
 
     /// A lamp that gives the floor beneath it this irradiance.
     pub fn lamp(&self, up: DVec3, irradiance: Vec3) -> Light {
-        // The axis of the room that is nearest to upwards.
-        let (up, _) =
-            self.covered.into_iter().fold((DVec3::Y, f64::NEG_INFINITY), |best, (side, _)| {
-                if side.dot(up) > best.1 { (side, side.dot(up)) } else { best }
-            });
+        let up = self.nearest_side(up);
         let half = 0.5 * self.bounds.extent().as_dvec3().dot(up.abs());
         let height = (1.0 + LAMP_HEIGHT) * half;
         Light::Point {

@@ -69,7 +69,8 @@ impl Voxels {
                         let held =
                             grid.memory() + (grid.voxel_count() as f64 * bytes_a_voxel) as usize;
                         if budget.take(held) {
-                            let missing = if voxels < wanted { missing.max(1.0) as u64 } else { 0 };
+                            // Where memory is not what is missing, there are too many entries.
+                            let missing = if voxels < wanted { missing as u64 } else { 0 };
                             return (Some(Self::over(triangles, grid)), missing);
                         }
                         if voxels == wanted {
