@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use umbra::occlusion::{Embree, EmbreeOptions, Occlusion};
 use umbra::render::{Piecewise, Progress, Settings};
-use umbra::scene::{Scene, builtin};
+use umbra::scene::{Scene, builtin, load};
 use umbra::shadow::{Combination, Prepared, prepare};
 
 const SCENES: [&str; 2] = ["chair-room", "drum"];
@@ -20,8 +20,7 @@ pub fn print(rounds: usize) {
     );
     println!("| --- | --- | --- | --- |{}", " --- |".repeat(THREADS.len()));
     for name in SCENES {
-        let scene = builtin::draft(name).and_then(|draft| draft.finish().ok());
-        let scene = scene.expect("it is built in");
+        let scene = load(name).expect("it is built in");
         let view = builtin::view(name).expect("it is built in");
         let embree = Embree::new(scene.triangles.clone(), true, EmbreeOptions::default())
             .expect("Embree is there");

@@ -4,14 +4,15 @@
 //! (see `culling_space`), and the triangle test is ours. So its answers are those of brute force,
 //! axis-parallel rays and scenes of any size and place included, where obvhs by itself errs.
 
+use std::ops::Range;
 use std::time::Duration;
 
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::ray::RayHit;
 use obvhs::{BvhBuildParams, fast_stack};
 
-use super::brute::visit_all;
-use super::culling_space::{CullingSpace, Passage};
+use super::culling_space::CullingSpace;
+use super::levels::levels;
 use super::{Cell, Visit, Walk};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
@@ -30,33 +31,24 @@ impl Bvh2 {
         let boxes = space.boxes(triangles);
         let mut tree = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
         // obvhs does not know it any more after reinsertion, and a stack that is too small forgets.
-        tree.max_depth = tree.max_depth.max(levels(&tree) + 1);
+        tree.max_depth = tree.max_depth.max(levels(|node| children(&tree, node)) + 1);
         Self { tree, space }
     }
 }
 
-/// Nodes from the root to the deepest, both included.
-fn levels(tree: &obvhs::bvh2::Bvh2) -> usize {
-    let (mut deepest, mut rest) = (0, vec![(0, 1)]);
-    while let Some((number, level)) = rest.pop() {
-        let Some(node) = tree.nodes.get(number as usize) else { continue };
-        deepest = deepest.max(level);
-        if !node.is_leaf() {
-            rest.extend([(node.first_index, level + 1), (node.first_index + 1, level + 1)]);
-        }
+/// The numbers of a node's children.
+fn children(tree: &obvhs::bvh2::Bvh2, node: u32) -> Range<u32> {
+    match tree.nodes.get(node as usize) {
+        Some(node) if !node.is_leaf() => node.first_index..node.first_index + 2,
+        _ => 0..0,
     }
-    deepest
 }
 
 impl Walk for Bvh2 {
     #[inline(always)]
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
-        let culled = match self.space.passage(ray) {
-            Passage::Outside => return,
-            Passage::Everything => return visit_all(&self.tree.primitive_indices, 8, visitor),
-            Passage::Through(culled) => culled,
-        };
         let order = &self.tree.primitive_indices[..];
+        let Some(culled) = self.space.enter(ray, order, visitor) else { return };
         fast_stack!(u32, (96, 192), self.tree.max_depth, stack, {
             self.tree.ray_traverse_dynamic(
                 &mut stack,

@@ -22,8 +22,10 @@ use obvhs::aabb::Aabb;
 use obvhs::ray::Ray as CullingRay;
 use rayon::prelude::*;
 
+use super::Visit;
+use super::brute::visit_all;
 use super::clip::{Clip, clip, padding};
-use crate::geometry::{Bounds, Ray, Triangles, is_finite};
+use crate::geometry::{Bounds, Ray, TriangleId, Triangles, is_finite};
 
 /// See the table above.
 const PADDING: f64 = 1.0 / (1 << 20) as f64;
@@ -34,6 +36,9 @@ const MARGIN: f64 = 1.0 / 64.0;
 
 /// Direction components are kept above this, so that no product with an inverse overflows or is NaN.
 const SMALLEST_COMPONENT: DVec3 = DVec3::splat(1e-30);
+
+/// Triangles that a visitor is shown at once where nothing is culled: as many as its tests are wide.
+const SHOWN_AT_ONCE: u32 = 8;
 
 /// Maps scene coordinates to the unit cube.
 pub(super) struct CullingSpace {
@@ -48,12 +53,6 @@ pub(super) struct Culled {
     pub ray: CullingRay,
     start: f64,
     length: f64,
-}
-
-pub(super) enum Passage {
-    Outside,
-    Through(Culled),
-    Everything,
 }
 
 impl CullingSpace {
@@ -88,13 +87,28 @@ impl CullingSpace {
         }
     }
 
+    /// The ray in this space, to walk a tree over triangles in this order. None where nothing is left to walk: the ray passes beside
+    /// all of them, or comes from so far away that the visitor was shown all of them.
+    #[inline(always)]
+    pub(super) fn enter<V: Visit + ?Sized>(
+        &self,
+        ray: &Ray,
+        order: &[TriangleId],
+        visitor: &mut V,
+    ) -> Option<Culled> {
+        match clip(ray, self.min, self.max) {
+            Clip::Outside => None,
+            Clip::Everything => {
+                visit_all(order, SHOWN_AT_ONCE, visitor);
+                None
+            }
+            Clip::Inside(enter, leave) => Some(self.culled(ray, enter, leave)),
+        }
+    }
+
+    /// The ray between two places of it.
     #[inline]
-    pub(super) fn passage(&self, ray: &Ray) -> Passage {
-        let (enter, leave) = match clip(ray, self.min, self.max) {
-            Clip::Outside => return Passage::Outside,
-            Clip::Everything => return Passage::Everything,
-            Clip::Inside(enter, leave) => (enter, leave),
-        };
+    fn culled(&self, ray: &Ray, enter: f64, leave: f64) -> Culled {
         let direction = ray.direction.as_dvec3() * self.scale;
         // Length in culling space of a unit of t.
         let length = direction.length();
@@ -110,7 +124,7 @@ impl CullingSpace {
             tmin: 0.0,
             tmax: ((leave - enter) * length + 2.0 * MARGIN) as f32,
         };
-        Passage::Through(Culled { ray, start: enter, length })
+        Culled { ray, start: enter, length }
     }
 }
 

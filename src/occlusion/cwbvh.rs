@@ -8,6 +8,7 @@
 //! Ylitie, Karras, Laine: Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs.
 //! High Performance Graphics 2017.
 
+use std::ops::Range;
 use std::time::Duration;
 
 use glam::UVec2;
@@ -16,8 +17,8 @@ use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh;
 use obvhs::faststack::{FastStack, StackStack};
 
-use super::brute::visit_all;
-use super::culling_space::{Culled, CullingSpace, Passage};
+use super::culling_space::{Culled, CullingSpace};
+use super::levels::levels;
 use super::{Cell, Visit, Walk};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
@@ -53,7 +54,7 @@ impl Cwbvh {
         let space = CullingSpace::new(triangles);
         let boxes = space.boxes(triangles);
         let tree = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
-        let levels = levels(&tree);
+        let levels = levels(|node| children(&tree, node));
         Self { tree, space, levels }
     }
 
@@ -102,26 +103,17 @@ impl Cwbvh {
     }
 }
 
-/// Nodes from the root to the deepest, both included.
-fn levels(tree: &CwBvh) -> usize {
-    let (mut deepest, mut rest) = (0, vec![(0, 1)]);
-    while let Some((number, level)) = rest.pop() {
-        let Some(node) = tree.nodes.get(number as usize) else { continue };
-        deepest = deepest.max(level);
-        let children = node.child_base_idx..node.child_base_idx + node.imask.count_ones();
-        rest.extend(children.map(|child| (child, level + 1)));
-    }
-    deepest
+/// The numbers of a node's children.
+fn children(tree: &CwBvh, node: u32) -> Range<u32> {
+    let node = tree.nodes.get(node as usize);
+    node.map_or(0..0, |node| node.child_base_idx..node.child_base_idx + node.imask.count_ones())
 }
 
 impl Walk for Cwbvh {
     #[inline(always)]
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
-        let culled = match self.space.passage(ray) {
-            Passage::Outside => return,
-            Passage::Everything => return visit_all(&self.tree.primitive_indices, 8, visitor),
-            Passage::Through(culled) => culled,
-        };
+        let order = &self.tree.primitive_indices;
+        let Some(culled) = self.space.enter(ray, order, visitor) else { return };
         if self.levels < STACK {
             self.walk_with(StackStack::<UVec2, STACK>::default(), &culled, visitor);
         } else {

@@ -21,6 +21,7 @@ mod engine;
 mod grid;
 mod kind;
 mod left_out;
+mod levels;
 mod nearest;
 mod sparing;
 mod tally;

@@ -4,7 +4,9 @@ use std::{fmt, path::PathBuf, sync::Arc};
 
 use glam::{DVec3, Vec3};
 
-use super::{Camera, Light, Material, Scene, SceneError, material::listed, sensible};
+use super::{
+    Camera, Light, Material, Scene, SceneError, light::is_colour, material::listed, sensible,
+};
 use crate::geometry::{Triangle, Triangles};
 
 /// One triangle in world coordinates.
@@ -215,8 +217,7 @@ impl Draft {
 
     /// The same for light from everywhere and for the factor to picture values.
     fn drop_unsound_surroundings(&mut self) {
-        let is_colour = |colour: Vec3| colour.is_finite() && colour.cmpge(Vec3::ZERO).all();
-        if !is_colour(self.ambient) || !is_colour(self.background) {
+        if !is_colour(&self.ambient) || !is_colour(&self.background) {
             self.choose_surroundings = true;
             self.notes.push(
                 "left out the ambient light and the background: the numbers of one make no sense"

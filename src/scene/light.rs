@@ -108,16 +108,15 @@ impl Light {
     /// Whether its numbers are finite, also in f32, its vectors point somewhere, and its colour is not negative.
     #[must_use]
     pub fn is_sound(&self) -> bool {
-        let colour = |colour: &Vec3| colour.is_finite() && colour.cmpge(Vec3::ZERO).all();
         let place = |place: &DVec3| place.as_vec3().is_finite();
         match self {
-            Self::Point { position, intensity } => place(position) && colour(intensity),
+            Self::Point { position, intensity } => place(position) && is_colour(intensity),
             Self::Spot { position, axis, intensity, inner, outer } => {
                 let vectors = place(position) && unit(*axis).is_some();
-                vectors && colour(intensity) && inner.is_finite() && outer.is_finite()
+                vectors && is_colour(intensity) && inner.is_finite() && outer.is_finite()
             }
             Self::Directional { direction, irradiance } => {
-                unit(*direction).is_some() && colour(irradiance)
+                unit(*direction).is_some() && is_colour(irradiance)
             }
         }
     }
@@ -141,6 +140,11 @@ impl Light {
         }
         self
     }
+}
+
+/// Whether a colour is finite and nowhere negative.
+pub(super) fn is_colour(colour: &Vec3) -> bool {
+    colour.is_finite() && colour.cmpge(Vec3::ZERO).all()
 }
 
 #[cfg(test)]

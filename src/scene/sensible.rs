@@ -93,22 +93,23 @@ pub(super) fn add_lights(scene: &mut Scene) {
         };
         added.push(format!("a point light before {all} emissive surfaces"));
     }
-    let room = Walls::of(scene);
-    if found.share < LEAST_SHARE && room.close_a_room() && room.hold(scene.camera.position) {
-        added.push("a point light under the ceiling".to_owned());
-        scene.lights.push(room.lamp(scene.camera.up, Vec3::splat(SUN)));
-    } else if found.share < LEAST_SHARE {
-        added.push("a directional light".to_owned());
-        let camera = &scene.camera;
-        // Low enough for shadows to be seen.
-        let direction = 0.55 * camera.up - 0.15 * camera.forward - 0.8 * camera.right;
-        scene.lights.push(Light::Directional {
-            direction: direction.normalize(),
-            irradiance: Vec3::splat(SUN),
-        });
+    if found.share < LEAST_SHARE {
+        let lamp = Walls::of(scene).lamp_for(&scene.camera, Vec3::splat(SUN));
+        let (what, light) = match lamp {
+            Some(lamp) => ("a point light under the ceiling", lamp),
+            None => ("a directional light", sun_beside(&scene.camera)),
+        };
+        added.push(what.to_owned());
+        scene.lights.push(light);
     }
     scene.lights.extend(found.lights);
     scene.notes.push(format!("no usable light in the file: added {}", added.join(" and ")));
+}
+
+/// A sun low enough for shadows to be seen.
+fn sun_beside(camera: &Camera) -> Light {
+    let direction = 0.55 * camera.up - 0.15 * camera.forward - 0.8 * camera.right;
+    Light::Directional { direction: direction.normalize(), irradiance: Vec3::splat(SUN) }
 }
 
 /// A little ambient light, so that shadows are not black, and a sky where a sun shines.

@@ -11,6 +11,12 @@ use crate::scene::Scene;
 /// and apart; to almost 90 where these are heaps of one triangle more than a cluster has), and besides.
 const CLUSTER_BYTES: [usize; 2] = [60, 1024];
 
+/// Bytes that clusters of so many triangles are expected to take.
+fn estimate(triangles: usize) -> usize {
+    let [a_triangle, besides] = CLUSTER_BYTES;
+    a_triangle * triangles + besides
+}
+
 /// The scene, the memory that is left, and what several verdicts use.
 pub(super) struct Stock<'a> {
     pub scene: &'a Scene,
@@ -51,8 +57,7 @@ impl<'a> Stock<'a> {
 
     /// What the user should know where there are no clusters.
     pub fn without_clusters(&self) -> String {
-        let [a_triangle, besides] = CLUSTER_BYTES;
-        let bytes = a_triangle * self.scene.triangles.opaque_count() as usize + besides;
+        let bytes = estimate(self.scene.triangles.opaque_count() as usize);
         let advice = self.budget.advice(bytes as u64);
         format!(
             "steps aside: the memory limit leaves too little for the triangles' clusters; {advice}"
@@ -65,8 +70,7 @@ impl<'a> Stock<'a> {
         count: usize,
         make: impl FnOnce() -> Clusters,
     ) -> Option<Arc<Clusters>> {
-        let [a_triangle, besides] = CLUSTER_BYTES;
-        let estimate = a_triangle * count + besides;
+        let estimate = estimate(count);
         if !self.budget.take(estimate) {
             return None;
         }
@@ -114,8 +118,7 @@ mod tests {
     #[test]
     fn clusters_that_turn_out_larger_than_estimated_are_paid_for_or_dropped() {
         let scene = heaps();
-        let [a_triangle, besides] = CLUSTER_BYTES;
-        let estimate = a_triangle * scene.triangles.len() + besides;
+        let estimate = estimate(scene.triangles.len());
         let truth = Clusters::new(&scene.triangles).memory();
         assert!(truth > estimate);
         let stock =

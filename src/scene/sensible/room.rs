@@ -87,7 +87,7 @@ impl Walls {
     }
 
     /// Whether a point lies between them.
-    pub fn hold(&self, point: DVec3) -> bool {
+    fn hold(&self, point: DVec3) -> bool {
         (point - self.bounds.centre()).abs().cmplt(0.5 * self.bounds.extent().as_dvec3()).all()
     }
 
@@ -125,15 +125,18 @@ impl Walls {
         Camera::look_at(places[farthest], centre, up, FIELD_OF_VIEW.to_radians())
     }
 
-    /// A lamp that gives the floor beneath it this irradiance.
-    pub fn lamp(&self, up: DVec3, irradiance: Vec3) -> Light {
-        let up = self.nearest_side(up);
+    /// For a camera in a closed room: a lamp under the ceiling that gives the floor beneath it this irradiance.
+    pub fn lamp_for(&self, camera: &Camera, irradiance: Vec3) -> Option<Light> {
+        if !self.close_a_room() || !self.hold(camera.position) {
+            return None;
+        }
+        let up = self.nearest_side(camera.up);
         let half = 0.5 * self.bounds.extent().as_dvec3().dot(up.abs());
         let height = (1.0 + LAMP_HEIGHT) * half;
-        Light::Point {
+        Some(Light::Point {
             position: self.bounds.centre() + LAMP_HEIGHT * half * up,
             intensity: irradiance * (height * height) as f32,
-        }
+        })
     }
 }
 

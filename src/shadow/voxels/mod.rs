@@ -55,9 +55,7 @@ impl Voxels {
     ) -> (Option<Self>, u64) {
         let wanted = wanted(triangles, density);
         let left = budget.left() as f64;
-        let bytes = |voxels: f64, entries: f64| {
-            voxels * (VOXEL_BYTES + bytes_a_voxel) + entries * ENTRY_BYTES
-        };
+        let bytes = |voxels, entries| Self::bytes(voxels, bytes_a_voxel, entries);
         let mut missing = bytes(wanted, triangles.len() as f64) - left;
         let mut voxels = wanted;
         while voxels >= FEWEST {
@@ -88,6 +86,11 @@ impl Voxels {
         (None, missing.max(1.0) as u64)
     }
 
+    /// Bytes of so many voxels, with what is held for each, and so many entries.
+    fn bytes(voxels: f64, bytes_a_voxel: f64, entries: f64) -> f64 {
+        voxels * (VOXEL_BYTES + bytes_a_voxel) + entries * ENTRY_BYTES
+    }
+
     /// The same, and which triangles lie beyond whose edges; says in `notes` what the budget does not allow.
     pub fn with_neighbours(
         triangles: &Arc<Triangles>,
@@ -114,8 +117,8 @@ impl Voxels {
             budget.give_back(bytes);
             missing
         } else {
-            let voxels = wanted(triangles, density) * (VOXEL_BYTES + bytes_a_voxel);
-            let least = voxels + triangles.len() as f64 * ENTRY_BYTES;
+            let voxels = wanted(triangles, density);
+            let least = Self::bytes(voxels, bytes_a_voxel, triangles.len() as f64);
             (bytes as u64).saturating_sub(left) + least as u64
         };
         let advice = budget.advice(left + missing);
