@@ -49,6 +49,7 @@
 //! irradiance = [1, 1, 1]
 //! ```
 
+mod light_fields;
 mod soundness;
 
 use std::{
@@ -57,6 +58,7 @@ use std::{
 };
 
 use glam::{DAffine3, DQuat, DVec3, EulerRot, Vec3};
+use light_fields::LightFields;
 use serde::Deserialize;
 use soundness::Step;
 
@@ -127,25 +129,14 @@ fn unscaled() -> [f64; 3] {
     [1.0; 3]
 }
 
+/// One of three kinds. Those are told apart after their fields are read: of fields that it puts aside until it knows the kind,
+/// serde forgets the lines.
 #[derive(Deserialize)]
-#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+#[serde(try_from = "LightFields")]
 enum LightEntry {
-    Point {
-        position: [f64; 3],
-        intensity: [f32; 3],
-    },
-    Spot {
-        position: [f64; 3],
-        target: [f64; 3],
-        intensity: [f32; 3],
-        #[serde(default)]
-        inner: f64,
-        outer: f64,
-    },
-    Directional {
-        from: [f64; 3],
-        irradiance: [f32; 3],
-    },
+    Point { position: [f64; 3], intensity: [f32; 3] },
+    Spot { position: [f64; 3], target: [f64; 3], intensity: [f32; 3], inner: f64, outer: f64 },
+    Directional { from: [f64; 3], irradiance: [f32; 3] },
 }
 
 /// Reads a scene description and the meshes it names.
@@ -153,8 +144,12 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
     let bytes = read_file(path)?;
     let text = String::from_utf8_lossy(&bytes);
     let description: Description = ::toml::from_str(&text).map_err(|error| {
-        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-        malformed(path, format!("line {line}: {}", error.message().replace('\n', " ")))
+        let before = error.span().map_or(0, |span| text[..span.start].matches('\n').count());
+        let message = error.message().replace('\n', " ");
+        // Of a value, serde does not say whose it is.
+        let field = text.lines().nth(before).filter(|_| message.starts_with("invalid "));
+        let field = field.map_or(String::new(), |line| format!(" in `{}`", line.trim()));
+        malformed(path, format!("line {}: {message}{field}", before + 1))
     })?;
     soundness::check(&text, &description).map_err(|problem| malformed(path, problem))?;
     let up = DVec3::from(description.up.unwrap_or([0.0, 1.0, 0.0]));

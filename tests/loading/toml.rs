@@ -72,9 +72,16 @@ fn lights_and_camera_are_what_the_file_says() {
 
 #[test]
 fn mistakes_are_answered_with_their_line() {
+    let point = |fields: &str| format!("\n[[light]]\nkind = \"point\"\n{fields}\n");
     let cases = [
         (format!("{TRIANGLE}colour = 3\n"), "line 3: unknown field `colour`"),
         ("ambient = [1, 2]\n".to_owned(), "line 1: invalid length 2"),
+        (point("position = [0, 5]\nintensity = [1, 1, 1]"), "line 4: invalid length 2"),
+        (point("position = [0, 5]\nintensity = [1, 1, 1]"), "in `position = [0, 5]`"),
+        (point("position = [0, 5, 0]\nintensity = true"), "in `intensity = true`"),
+        (point("intensity = [1, 1, 1]"), "line 2: missing field `position`"),
+        (point("from = [1, 1, 1]"), "line 2: a point light has no field `from`; leave it out"),
+        (point("colour = 3"), "line 4: unknown field `colour`"),
         ("[camera]\nposition = [0, 0, 0]\n".to_owned(), "line 1: missing field `target`"),
         ("[[mesh]\n".to_owned(), "line 1: "),
         ("[[light]]\nkind = \"laser\"\n".to_owned(), "unknown variant `laser`"),
