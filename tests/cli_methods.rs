@@ -60,6 +60,9 @@ fn sizes_of_memory_that_are_none_are_refused() {
     for size in ["lots", "-1", "12X", "", "M", "nan"] {
         method_refused(&format!("--memory={size}"), &["--memory", "512M"]);
     }
+    let too_much = ["--memory", "no machine has so much"];
+    method_refused("--memory 99999999999999999999", &too_much);
+    method_refused("--memory 99999999999T", &too_much);
 }
 
 #[test]
@@ -170,10 +173,8 @@ fn what_the_memory_limit_makes_coarser_or_leaves_out_is_said() {
     for (arguments, told) in [
         ("--memory 1M", "voxels only, to keep to the memory limit"),
         ("--memory 200k --lazy", "voxels only, to keep to the memory limit"),
-        ("--memory 0", "grid takes 1 MiB, more than the memory limit"),
-        ("--memory 100k --backend cwbvh", "more than the memory limit, and cannot be coarser"),
         ("--memory 1M --shadows voxel-occlusion", "voxel-occlusion: steps aside"),
-        ("--memory 0 --shadows shadow-polygons+woo", "shadow-polygons: steps aside"),
+        ("--memory 1M --shadows shadow-polygons+woo", "shadow-polygons: steps aside"),
     ] {
         let (said, picture) = render(arguments);
         assert!(said.contains(told), "{arguments}: {said}");
@@ -181,4 +182,71 @@ fn what_the_memory_limit_makes_coarser_or_leaves_out_is_said() {
     }
     let (said, _) = render("--memory 4G --shadows voxel-occlusion+woo");
     assert!(!said.contains("memory limit"), "{said}");
+}
+
+#[test]
+fn a_limit_that_an_engine_cannot_keep_is_refused_with_one_that_it_can() {
+    let folder = folder();
+    for (arguments, told) in [
+        ("--memory 0", "--memory 0: over this scene grid takes more; give 1M or more"),
+        ("--memory 512", "(512 without a unit are bytes: did you mean 512M?)"),
+        ("--memory 1.5 --backend bvh2", "over this scene bvh2 takes more; give "),
+        ("--memory 100k --backend cwbvh", "--memory 100k: over this scene cwbvh takes more; give "),
+    ] {
+        let line = format!("render chair-room -o out.png --size 16x12 {arguments}");
+        refused(folder.path(), &line, &[told]);
+        let said = said(&run(folder.path(), &line));
+        let is_bare = arguments.contains("512") || arguments.contains("1.5");
+        assert_eq!(said.contains("did you mean"), is_bare, "{said}");
+        let least = said.split("give ").nth(1).unwrap().split(' ').next().unwrap();
+        let [option, _, engine @ ..] = &arguments.split(' ').collect::<Vec<_>>()[..] else {
+            unreachable!("each has a limit");
+        };
+        let line = format!(
+            "render chair-room -o out.png --size 16x12 {option} {least} {}",
+            engine.join(" ")
+        );
+        let output = run(folder.path(), &line);
+        assert!(output.status.success(), "{line}");
+        fs::remove_file(folder.path().join("out.png")).unwrap();
+    }
+}
+
+/// The grid grows into room that is given for a verdict, and the advice knows. What lights see is known only once they are
+/// asked, so a light buffer may ask for room once more.
+#[test]
+fn who_follows_the_advice_has_memory_enough() {
+    let folder = folder();
+    for (method, tries) in [("shaft", 1), ("light-buffer", 3)] {
+        let render = |limit: &str| {
+            let line = format!("render chair-room -o out.png --size 32x24 --shadows {method}");
+            let output = run(folder.path(), &format!("{line} --memory {limit}"));
+            assert!(output.status.success(), "{}", said(&output));
+            let said = said(&output);
+            let advice = said.split("try --memory ").nth(1)?.split(' ').next()?;
+            Some(advice.to_owned())
+        };
+        let mut advice = render("1M");
+        for _ in 0..tries {
+            advice = advice.and_then(|limit| render(&limit));
+        }
+        assert_eq!(advice, None, "{method}");
+    }
+}
+
+#[cfg(feature = "embree")]
+#[test]
+fn where_shafts_step_aside_over_embree_its_own_answers_are_not_called_exact() {
+    let folder = folder();
+    let line = "render chair-room -o out.png --size 16x12 --backend embree --stats out.json";
+    assert!(run(folder.path(), line).status.success());
+    let stats = fs::read(folder.path().join("out.json")).unwrap();
+    let stats: Value = serde_json::from_slice(&stats).unwrap();
+    // Room for Embree and a little more, but not for shafts.
+    let limit = stats["backend_bytes"].as_u64().unwrap() + (1 << 19);
+    let output = run(folder.path(), &format!("{line} --memory {limit}"));
+    assert!(output.status.success(), "{}", said(&output));
+    let said = said(&output);
+    assert!(said.contains("it steps aside") && said.contains("answers are Embree's own"), "{said}");
+    assert!(!said.contains("exact;"), "{said}");
 }

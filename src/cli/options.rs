@@ -1,6 +1,7 @@
 //! Arguments that several commands share.
 
 use std::path::Path;
+use std::str::FromStr;
 use std::time::Instant;
 
 use clap::Args;
@@ -45,30 +46,62 @@ pub(super) struct EngineOptions {
     /// Most memory that engine and shadow method may take, like 512M or 2G: what is prepared becomes coarser
     /// or steps aside, and says so; if not given, the shadow method takes no more than Embree's structure would, and
     /// both together no more than a quarter of the machine
-    #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
-    pub memory: Option<u64>,
+    #[arg(long, value_name = "SIZE", value_parser = MemoryLimit::from_str)]
+    memory: Option<MemoryLimit>,
     /// Threads; all processors if not given
     #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
     pub threads: Option<usize>,
 }
 
-/// A number of bytes, with K, M, G or T for powers of 1024.
-fn parse_bytes(text: &str) -> Result<u64, String> {
-    let number = text.trim_end_matches(['B', 'b']).trim_end_matches('i');
-    let digits = number.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let shift = match &number[digits.len()..] {
-        "" => Some(0),
-        "K" | "k" => Some(10),
-        "M" | "m" => Some(20),
-        "G" | "g" => Some(30),
-        "T" | "t" => Some(40),
-        _ => None,
-    };
-    let bytes = digits.parse::<f64>().ok().filter(|number| *number >= 0.0 && number.is_finite());
-    let (Some(bytes), Some(shift)) = (bytes, shift) else {
-        return Err("give it as bytes, or like 512M or 2.5G".to_owned());
-    };
-    Ok((bytes * f64::from(shift).exp2()) as u64)
+/// How much memory may be taken.
+#[derive(Clone, Debug)]
+struct MemoryLimit {
+    bytes: u64,
+    /// As it was given.
+    text: String,
+}
+
+impl FromStr for MemoryLimit {
+    type Err = &'static str;
+
+    /// A number of bytes, with K, M, G or T for powers of 1024.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let number = text.trim_end_matches(['B', 'b']).trim_end_matches('i');
+        let digits = number.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+        let shift = match &number[digits.len()..] {
+            "" => Some(0),
+            "K" | "k" => Some(10),
+            "M" | "m" => Some(20),
+            "G" | "g" => Some(30),
+            "T" | "t" => Some(40),
+            _ => None,
+        };
+        let bytes = digits.parse::<f64>().ok().filter(|number| *number >= 0.0);
+        let (Some(bytes), Some(shift)) = (bytes, shift) else {
+            return Err("give it as bytes, or like 512M or 2.5G");
+        };
+        let bytes = bytes * f64::from(shift).exp2();
+        if bytes >= u64::MAX as f64 {
+            return Err("no machine has so much; give it as bytes, or like 512M or 2.5G");
+        }
+        Ok(Self { bytes: bytes as u64, text: text.to_owned() })
+    }
+}
+
+impl MemoryLimit {
+    /// What is said where an engine takes so many bytes even at its coarsest.
+    fn too_little(&self, backend: Backend, bytes: u64) -> Failure {
+        let Self { text, .. } = self;
+        let is_bare = text.ends_with(|last: char| last.is_ascii_digit());
+        let meant = match is_bare && self.bytes << 20 >= bytes {
+            true => format!(" ({text} without a unit are bytes: did you mean {text}M?)"),
+            false => String::new(),
+        };
+        Failure::Input(format!(
+            "--memory {text}: over this scene {backend} takes more; give {}M or more{meant}",
+            bytes.div_ceil(1 << 20)
+        ))
+    }
 }
 
 /// Voxels along x, y and z.
@@ -95,26 +128,40 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     Ok((number(width)?, number(height)?))
 }
 
+/// An engine, built.
+pub(super) struct Built {
+    pub backend: Box<dyn Occlusion>,
+    /// Bytes that it would take if it were not coarser, to keep to a limit.
+    pub wanted_bytes: u64,
+    pub seconds: f64,
+}
+
 impl EngineOptions {
     /// The test that was asked for, or the backend's own choice.
     pub fn test(&self) -> Test {
         self.test.unwrap_or_else(|| self.backend.default_test())
     }
 
-    /// Builds the backend; also says how many seconds that took.
-    pub fn build(&self, scene: &Scene) -> Result<(Box<dyn Occlusion>, f64), Failure> {
+    /// Most bytes that engine and shadow method may take, if that was given.
+    pub fn most_bytes(&self) -> Option<u64> {
+        self.memory.as_ref().map(|limit| limit.bytes)
+    }
+
+    /// Builds the backend.
+    pub fn build(&self, scene: &Scene) -> Result<Built, Failure> {
         let grid = GridOptions {
             resolution: self.grid,
             nested: !self.uniform,
             lazy: self.lazy,
-            most_bytes: self.memory,
+            most_bytes: self.most_bytes(),
         };
         let start = Instant::now();
-        let backend = with_word(&format!("building {}", self.backend), || {
+        with_word(&format!("building {}", self.backend), || {
             let backend = self.build_over(scene, grid)?;
-            self.within_memory(scene, backend)
-        })?;
-        Ok((backend, start.elapsed().as_secs_f64()))
+            let wanted_bytes = backend.memory() as u64;
+            let backend = self.within_memory(scene, backend)?;
+            Ok(Built { backend, wanted_bytes, seconds: start.elapsed().as_secs_f64() })
+        })
     }
 
     fn build_over(
@@ -131,30 +178,26 @@ impl EngineOptions {
         &self,
         scene: &Scene,
         mut backend: Box<dyn Occlusion>,
-    ) -> Result<Box<dyn Occlusion>, BackendError> {
+    ) -> Result<Box<dyn Occlusion>, Failure> {
         /// How many times fewer voxels the next coarser grid has.
         const COARSER: usize = 8;
-        let Some(limit) = self.memory else { return Ok(backend) };
+        let Some(limit) = &self.memory else { return Ok(backend) };
         let mut voxels = scene.triangles.len();
-        while backend.memory() as u64 > limit && self.backend == Backend::Grid && voxels > 0 {
+        while backend.memory() as u64 > limit.bytes && self.backend == Backend::Grid && voxels > 0 {
             let grid = GridOptions::uniform(&scene.triangles, voxels);
             // Gone before the next comes.
             drop(backend);
             backend = self.build_over(scene, grid)?;
-            if backend.memory() as u64 <= limit || voxels == 1 {
+            if backend.memory() as u64 <= limit.bytes {
                 let [x, y, z] = grid.resolution.expect("a number of voxels gives a resolution");
                 say!("umbra: {x} by {y} by {z} voxels only, to keep to the memory limit");
             }
             voxels = if voxels == 1 { 0 } else { (voxels / COARSER).max(1) };
         }
-        if backend.memory() as u64 > limit {
-            say!(
-                "umbra: {} takes {} MiB, more than the memory limit, and cannot be coarser",
-                self.backend,
-                backend.memory().div_ceil(1 << 20),
-            );
+        match backend.memory() as u64 {
+            bytes if bytes > limit.bytes => Err(limit.too_little(self.backend, bytes)),
+            _ => Ok(backend),
         }
-        Ok(backend)
     }
 
     /// Refuses what only the grid has, where another engine was asked for.

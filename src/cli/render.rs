@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::failure::{Failure, say};
 use super::numbers::{positive, whole};
-use super::options::{EngineOptions, MOST_DEPTH, load_scene, parse_size};
+use super::options::{Built, EngineOptions, MOST_DEPTH, load_scene, parse_size};
 use super::outputs::{Outputs, check_outputs};
 use super::progress::with_bar;
 use super::shadows::ShadowOptions;
@@ -153,14 +153,15 @@ impl Render {
                 scene.lights.len()
             )));
         }
-        let (backend, build_seconds) = self.engine.build(&scene)?;
+        let built = self.engine.build(&scene)?;
+        let Built { backend, seconds: build_seconds, .. } = &built;
         let start = Instant::now();
         let pixels = u64::from(settings.width) * u64::from(settings.height);
-        let expected = || forecast(&scene, &*backend, settings);
-        let shadows = self.shadows.prepare(&scene, &*backend, &self.engine, expected)?;
+        let expected = || forecast(&scene, &**backend, settings);
+        let shadows = self.shadows.prepare(&scene, &built, &self.engine, expected)?;
         let progress = Progress::default();
         let rendered = with_bar(pixels, &progress, || {
-            render(&scene, &*backend, &*shadows, settings, &progress)
+            render(&scene, &**backend, &*shadows, settings, &progress)
         })?;
         let render_seconds = start.elapsed().as_secs_f64();
         let Rendered { film, mask, answers, statistics, .. } = rendered;
@@ -235,7 +236,7 @@ impl Render {
             backend_bytes: backend.memory(),
             shadow_bytes: shadows.memory(),
             load_seconds,
-            build_seconds,
+            build_seconds: *build_seconds,
             render_seconds,
             counts: statistics,
         };

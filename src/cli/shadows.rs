@@ -7,8 +7,8 @@ use clap::Args;
 
 use super::failure::{Failure, say};
 use super::numbers::{finite, whole};
-use super::options::{EngineOptions, MOST_DEPTH};
-use crate::occlusion::{Backend, Occlusion};
+use super::options::{Built, EngineOptions, MOST_DEPTH};
+use crate::occlusion::Backend;
 use crate::render::Order;
 use crate::scene::Scene;
 use crate::shadow::{
@@ -121,30 +121,31 @@ impl ShadowOptions {
         self.shadows.to_string()
     }
 
+    /// What stands before this engine, unless that is chosen while rendering.
+    fn given(&self, backend: Backend) -> Option<Combination> {
+        // Embree has no exact test, so nobody but Embree gives its bits, and there is nothing to choose among. Shafts answer
+        // all rays to lights, exactly, and in less time than Embree's single rays.
+        let embree = backend == Backend::Embree && self.self_shadow == SelfShadow::Offset;
+        match self.shadows {
+            Choice::Given(combination) => Some(combination),
+            Choice::Auto => embree.then(|| VerdictKind::Shaft.into()),
+        }
+    }
+
     /// Makes it ready for a scene and a backend with this test, within a memory limit, for about as many queries as
     /// are expected.
     pub fn prepare<'a>(
         &self,
         scene: &'a Scene,
-        backend: &'a dyn Occlusion,
+        built: &'a Built,
         engine: &EngineOptions,
         expected: impl FnOnce() -> u64,
     ) -> Result<Box<dyn Prepared + 'a>, MethodError> {
-        // Embree has no exact test, so nobody but Embree gives its bits, and there is nothing to choose among. Shafts answer
-        // all rays to lights, exactly, and in less time than Embree's single rays.
-        let embree = engine.backend == Backend::Embree && self.self_shadow == SelfShadow::Offset;
-        let given = match self.shadows {
-            Choice::Given(combination) => Some(combination),
-            Choice::Auto if embree => {
-                say!(
-                    "umbra: over embree, auto is shaft: exact; --shadows trace has Embree's own answers"
-                );
-                Some(VerdictKind::Shaft.into())
-            }
-            Choice::Auto => None,
-        };
+        let backend = &*built.backend;
+        let given = self.given(engine.backend);
         let plan = Plan {
-            budget: engine.memory,
+            budget: engine.most_bytes(),
+            backend_bytes: built.wanted_bytes,
             self_shadow: self.self_shadow,
             retest: self.retest,
             reset_scanlines: self.reset_scanlines,
@@ -153,7 +154,19 @@ impl ShadowOptions {
             ..given.unwrap_or_default().into()
         };
         if given.is_some() {
-            return prepare(plan, scene, backend);
+            let prepared = prepare(plan, scene, backend)?;
+            if self.shadows == Choice::Auto {
+                let exact = prepared.verdicts().iter().all(|report| report.notes.is_empty());
+                say!(
+                    "umbra: over embree, auto is shaft: {}",
+                    match exact {
+                        true => "exact; --shadows trace has Embree's own answers",
+                        false =>
+                            "it steps aside for want of memory, so the answers are Embree's own",
+                    }
+                );
+            }
+            return Ok(prepared);
         }
         let auto = Auto::new(plan, engine.test(), scene, backend)?;
         Ok(Box::new(auto.expecting(expected())))

@@ -17,7 +17,7 @@ const LEAST: u64 = 1 << 20;
 #[derive(Debug)]
 pub struct Budget {
     left: AtomicU64,
-    /// Those that there were, and those that a backend takes under the same limit.
+    /// Those that there were, and those that a backend takes, or would under a larger limit.
     all: u64,
     backend: u64,
 }
@@ -29,15 +29,15 @@ impl Budget {
         Self { left: AtomicU64::new(bytes), all: bytes, backend: 0 }
     }
 
-    /// What a limit leaves beside a backend. Without a limit, what Embree would take over the scene, and no more than is
+    /// What a limit leaves beside a backend, which may be a coarser one than that of `wanted` bytes. Without a limit, what Embree would take over the scene, and no more than is
     /// left of the machine's share.
     #[must_use]
-    pub fn beside(backend: &dyn Occlusion, scene: &Scene, limit: Option<u64>) -> Self {
+    pub fn beside(backend: &dyn Occlusion, wanted: u64, scene: &Scene, limit: Option<u64>) -> Self {
         let backend = backend.memory() as u64;
         let rest = limit.unwrap_or_else(default_budget).saturating_sub(backend);
         let modest = (BYTES_PER_TRIANGLE * scene.triangles.len() as u64).max(LEAST);
         let bytes = if limit.is_some() { rest } else { rest.min(modest) };
-        Self { backend, ..Self::new(bytes) }
+        Self { backend: backend.max(wanted), ..Self::new(bytes) }
     }
 
     /// What a user may do so that so many more bytes fit: no more than a try, as others may grow into the same room.
@@ -89,8 +89,8 @@ mod tests {
         );
         let backend = &*backend.unwrap();
         let triangles = scene.triangles.len() as u64;
-        assert_eq!(Budget::beside(backend, &scene, None).left(), 64 * triangles);
-        let given = Budget::beside(backend, &scene, Some(1 << 30));
+        assert_eq!(Budget::beside(backend, 0, &scene, None).left(), 64 * triangles);
+        let given = Budget::beside(backend, 0, &scene, Some(1 << 30));
         assert_eq!(given.left(), (1 << 30) - backend.memory() as u64);
     }
 

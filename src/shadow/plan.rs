@@ -30,6 +30,9 @@ pub struct Plan {
     pub verdicts: VerdictSet,
     /// Bytes that they may take together with the backend. If not given, they alone may take what Embree's structure would.
     pub budget: Option<u64>,
+    /// Bytes that the backend would take with a larger budget, if it was made coarser for this one: advice leaves it room to
+    /// take them.
+    pub backend_bytes: u64,
     /// The memory that is asked next.
     pub method: Method,
     /// How a ray keeps clear of its own triangle.
@@ -68,7 +71,7 @@ impl Plan {
 
     /// What its verdicts are prepared from; they share what memory the backend leaves of the budget.
     pub(super) fn stock<'a>(&self, scene: &'a Scene, backend: &dyn Occlusion) -> Stock<'a> {
-        let budget = Budget::beside(backend, scene, self.budget);
+        let budget = Budget::beside(backend, self.backend_bytes, scene, self.budget);
         Stock::new(scene, Arc::new(budget), self.verdicts)
     }
 }
@@ -80,6 +83,7 @@ impl<C: Into<Combination>> From<C> for Plan {
         Self {
             verdicts,
             budget: None,
+            backend_bytes: 0,
             method,
             self_shadow: SelfShadow::default(),
             retest: Retest::default(),

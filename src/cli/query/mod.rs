@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{EngineOptions, load_scene};
+use super::options::{Built, EngineOptions, load_scene};
 use super::outputs::{Outputs, STANDARD_OUTPUT, check_outputs, unprinted};
 use super::progress::with_rate;
 use crate::geometry::Ray;
@@ -119,7 +119,7 @@ impl Query {
         let start = Instant::now();
         let scene = load_scene(&self.scene, outputs)?;
         let load_seconds = start.elapsed().as_secs_f64();
-        let (backend, build_seconds) = self.engine.build(&scene)?;
+        let Built { backend, seconds: build_seconds, .. } = self.engine.build(&scene)?;
         let start = Instant::now();
         let done = Done::default();
         let (counts, file) = with_rate(

@@ -66,7 +66,9 @@ impl LightBuffer {
         Self {
             triangles: scene.triangles.clone(),
             lights: scene.lights.clone(),
-            aside: clusters.is_none().then(|| stock.without_clusters()),
+            aside: clusters.is_none().then(|| {
+                format!("{}, as what lights see takes room, too", stock.without_clusters())
+            }),
             clusters,
             maps: scene.lights.iter().map(|_| OnceLock::new()).collect(),
             arithmetic: Arithmetic::of_this_cpu(),
