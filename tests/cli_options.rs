@@ -41,10 +41,27 @@ fn options_that_would_change_nothing_are_refused() {
         ("--backend embree --shadows woo --retest not-cell", ["--retest", "another engine"]),
         ("--reset-scanlines", ["--reset-scanlines", "--order scanline or serpentine"]),
         ("--reset-scanlines --order tiles", ["--reset-scanlines", "tiles"]),
+        ("--shadows trace --retest not-triangles", ["--retest", "--shadows trace"]),
+        ("--shadows shaft --retest not-cell", ["--retest", "--shadows shaft"]),
+        ("--shadows object-cache --retest not-cell", ["--retest", "give voxel-cache"]),
+        ("--shadows trace --tolerance 0.5", ["--tolerance", "give cache-tree-tolerance"]),
+        ("--shadows object-cache --tolerance 0.5", ["--tolerance", "--shadows object-cache"]),
+        ("--tolerance 0.5", ["--tolerance", "--shadows auto"]),
+        ("--shadows trace --tree-depth 31", ["--tree-depth", "give cache-tree"]),
+        ("--shadows voxel-cache --tree-depth 0", ["--tree-depth", "--shadows voxel-cache"]),
+        (
+            "--order scanline --reset-scanlines --shadows shaft",
+            ["--reset-scanlines", "--shadows shaft"],
+        ),
     ] {
         refused(folder().path(), &format!("render triangle.obj -o out.png {arguments}"), &told);
     }
     let folder = folder();
+    for option in ["--bits 16", "--exposure 50"] {
+        let line = format!("render triangle.obj -o out.exr {option}");
+        let name = option.split(' ').next().unwrap();
+        refused(folder.path(), &line, &[name, "EXR", "name a .png"]);
+    }
     let line = "query triangle.obj --rays rays.csv -o out.csv --backend bvh2 --uniform";
     refused(folder.path(), line, &["--uniform", "grid"]);
     let line = "paper --quick --backends bvh2,cwbvh --uniform";

@@ -46,6 +46,13 @@ fn every_variant_makes_the_same_picture() {
 }
 
 #[test]
+fn variants_are_compared_without_verdicts() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "paper --quick --verdicts shaft --variants";
+    assert_refusal(&run(folder.path(), line), &["--variants", "cannot be used", "--verdicts"]);
+}
+
+#[test]
 fn a_coarser_grid_has_more_success_with_its_voxels() {
     let rate = |options: &str| {
         let (_, json) = paper(&format!("--backends grid {options}"));

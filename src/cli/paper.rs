@@ -12,6 +12,7 @@ use super::numbers::{finite, whole};
 use super::options::{MOST_DEPTH, only_over, parse_resolution, parse_size};
 use super::outputs::{check_outputs, print_beside_files, write_json};
 use super::progress::with_bar;
+use super::shadows::retest_over_embree;
 use crate::measure::paper::{
     Conditions, LOG, NODE_BYTES, Published, SceneReport, Storage, TABLE, VariantReport, callgrind,
     compare_variants, reproduce, storage, storage_table,
@@ -88,7 +89,7 @@ pub(super) struct Paper {
     #[arg(long, default_value_t, hide_default_value = true, value_parser = parse_verdicts)]
     verdicts: VerdictSet,
     /// Compares what else the paper mentions, instead of printing its table
-    #[arg(long, conflicts_with = "retest")]
+    #[arg(long, conflicts_with_all = ["retest", "verdicts"])]
     variants: bool,
     /// Counts instructions instead of time, by running under Valgrind: the same figures every time
     #[arg(long, conflicts_with = "repetitions")]
@@ -160,6 +161,10 @@ impl Paper {
         conditions.check(self.scenes())?;
         let options = [("--grid", self.grid.is_some()), ("--uniform", self.uniform)];
         only_over(Backend::Grid, &conditions.backends, &options)?;
+        let is_embree = |backend: &Backend| *backend == Backend::Embree;
+        if self.retest != Retest::default() && conditions.backends.iter().all(is_embree) {
+            return Err(retest_over_embree());
+        }
         let outputs: Vec<_> = self.stats.iter().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &[])?;
         if self.instructions && self.callgrind_folder.is_none() {

@@ -53,10 +53,11 @@ pub(super) struct Render {
     /// The order in which pixels are rendered
     #[arg(long, value_enum, default_value_t)]
     order: Order,
-    /// Bits a channel of a PNG: 8 or 16
+    /// Bits a channel of a PNG: 8 or 16 (an EXR has floats)
     #[arg(long, value_name = "N", default_value = "8", value_parser = ["8", "16"])]
     bits: String,
-    /// Factor from radiance to picture; chosen from the picture if the scene says nothing
+    /// Factor from radiance to PNG, as an EXR holds radiance itself; chosen from the picture if the scene says
+    /// nothing
     #[arg(long, value_name = "FACTOR", value_parser = positive)]
     exposure: Option<f32>,
     /// Also writes pictures of the shadows beside the output: NAME.mask.png (what is in shadow),
@@ -132,6 +133,7 @@ impl Render {
             ..Settings::default()
         };
         settings.check()?;
+        self.check_kind(kind)?;
         self.engine.check()?;
         self.shadows.check(self.engine.backend, self.order)?;
         let pictures = self.aov.then(|| PICTURES.map(|what| beside(&self.output, what)));
@@ -140,6 +142,17 @@ impl Render {
         check_outputs(&outputs, &[Path::new(&self.scene)])?;
         let pool = self.engine.pool()?;
         pool.install(|| self.render(kind, &settings, &outputs))
+    }
+
+    /// Refuses what would change nothing in a picture of this kind.
+    fn check_kind(&self, kind: Picture) -> Result<(), Failure> {
+        let options = [("--bits", self.bits != "8"), ("--exposure", self.exposure.is_some())];
+        let given = options.iter().find(|(_, is_given)| *is_given && kind == Picture::OpenExr);
+        given.map_or(Ok(()), |(option, _)| {
+            Err(Failure::Input(format!(
+                "{option}: an EXR holds radiance itself, in floats; leave it out, or name a .png"
+            )))
+        })
     }
 
     fn render(&self, kind: Picture, settings: &Settings, outputs: &[&Path]) -> Result<(), Failure> {

@@ -98,6 +98,14 @@ pub(super) fn parse_method(text: &str) -> Result<Combination, String> {
     text.parse().map_err(|error: CombinationError| error.to_string())
 }
 
+/// Embree alone decides what it tests.
+pub(super) fn retest_over_embree() -> Failure {
+    Failure::Input(
+        "--retest: Embree tests again what it likes; leave it out, or give another engine"
+            .to_owned(),
+    )
+}
+
 impl ShadowOptions {
     /// Refuses what would change nothing.
     pub fn check(&self, backend: Backend, order: Order) -> Result<(), Failure> {
@@ -108,12 +116,36 @@ impl ShadowOptions {
             ));
         }
         if self.retest != Retest::default() && backend == Backend::Embree {
-            return Err(Failure::Input(
-                "--retest: Embree tests again what it likes; leave it out, or give another engine"
-                    .to_owned(),
-            ));
+            return Err(retest_over_embree());
         }
-        Ok(())
+        let usual = Plan::from(Method::CacheTree);
+        // Who is chosen while rendering may be a cache tree.
+        let method = self.given(backend).map_or(usual.method, |combination| combination.method);
+        let remembers = method != Method::Trace;
+        let is_tree = matches!(method, Method::CacheTree | Method::CacheTreeTolerance);
+        let retests = match self.retest {
+            Retest::Again => true,
+            Retest::NotCell => remembers && method != Method::ObjectCache,
+            // The mailbox serves a ray that leaves out its own triangle, too.
+            Retest::NotTriangles => remembers || self.self_shadow == SelfShadow::Exclude,
+        };
+        let without_use = [
+            ("--retest", !retests, "voxel-cache or cache-tree"),
+            ("--reset-scanlines", self.reset_scanlines && !remembers, "voxel-cache or cache-tree"),
+            ("--tree-depth", self.tree_depth != usual.tree_depth && !is_tree, "cache-tree"),
+            (
+                "--tolerance",
+                self.tolerance != usual.tolerance && method != Method::CacheTreeTolerance,
+                "cache-tree-tolerance",
+            ),
+        ];
+        match without_use.iter().find(|(_, is_without, _)| *is_without) {
+            None => Ok(()),
+            Some((option, _, others)) => Err(Failure::Input(format!(
+                "{option} changes nothing with --shadows {}; leave it out, or give {others}",
+                self.shadows
+            ))),
+        }
     }
 
     /// What was asked for, as it is written.
