@@ -148,8 +148,22 @@ fn the_contract_of_a_row() {
     succeeded(&output);
     assert_eq!(fs::read_to_string(folder.join("out.csv")).unwrap(), "1\n0\n0\n1\n0\n0\n0\n0\n0\n");
     assert!(said(&output).contains("3 rows with NaN"), "{}", said(&output));
+}
+
+#[test]
+fn no_rays_have_no_answers_and_are_no_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("triangle.obj"), TRIANGLE).unwrap();
+    for text in ["", "ox,oy,oz,tx,ty,tz\n", "# none\n\n", "ox,oy,oz,tx,ty,tz\n# none"] {
+        fs::write(folder.join("none.csv"), text).unwrap();
+        let output = run(folder, "query triangle.obj --rays none.csv -o out.csv");
+        succeeded(&output);
+        assert!(fs::read(folder.join("out.csv")).unwrap().is_empty(), "{text}");
+        assert!(said(&output).contains("; 0 rows, 0 blocked"), "{}", said(&output));
+    }
     fs::write(folder.join("none.npy"), npy("'<f4'", "False", "(0, 6)", &[])).unwrap();
-    succeeded(&run(folder, "query scene.toml --rays none.npy -o none.out"));
+    succeeded(&run(folder, "query triangle.obj --rays none.npy -o none.out"));
     assert!(answers_of_npy(&fs::read(folder.join("none.out")).unwrap(), 0).is_empty());
 }
 
@@ -197,6 +211,10 @@ fn rays_and_answers_go_through_pipes() {
     let output = child.wait_with_output().unwrap();
     succeeded(&output);
     assert_eq!(output.stdout, b"1\n0\n");
+    let mut child = command.spawn().unwrap();
+    child.stdin.take().unwrap().write_all(b"1,1,1,1,1,-1\noops\n").unwrap();
+    let said = said(&child.wait_with_output().unwrap());
+    assert!(said.contains("umbra: standard input: line 2: 'oops'"), "{said}");
 }
 
 /// A link stays a link; a device stays a device.

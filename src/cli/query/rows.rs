@@ -1,5 +1,6 @@
 //! The file of rays, block by block: as much memory for a hundred million rows as for one million.
 
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -56,6 +57,11 @@ impl Format {
     }
 }
 
+/// A path as messages name it.
+fn named(path: &Path) -> &Path {
+    if path == Path::new("-") { Path::new("standard input") } else { path }
+}
+
 /// A file of rays being read.
 pub(super) struct Rows<'a> {
     path: &'a Path,
@@ -77,7 +83,7 @@ pub(super) struct Rows<'a> {
 impl<'a> Rows<'a> {
     /// Opens a file, or standard input for `-`, and finds out how rows are written.
     pub fn open(path: &'a Path) -> Result<Self, Failure> {
-        let unreadable = |reason: io::Error| Failure::unreadable(path, &reason);
+        let unreadable = |reason: io::Error| Failure::unreadable(named(path), &reason);
         let (source, size): (Box<dyn Read + Send>, _) = if path == Path::new("-") {
             (Box::new(io::stdin()), None)
         } else if path.is_dir() {
@@ -99,9 +105,6 @@ impl<'a> Rows<'a> {
             remaining: 0,
         };
         rows.fill()?;
-        if rows.buffer.is_empty() {
-            return Err(rows.bad("the file is empty; give rows ox,oy,oz,tx,ty,tz"));
-        }
         let named_npy = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy"));
         if rows.buffer.starts_with(npy::MAGIC) {
             let (layout, length) =
@@ -153,9 +156,14 @@ impl<'a> Rows<'a> {
         self.used = 0;
         let wanted = (BLOCK_BYTES - self.buffer.len()) as u64;
         let read = self.source.by_ref().take(wanted).read_to_end(&mut self.buffer);
-        let read = read.map_err(|reason| Failure::unreadable(self.path, &reason))?;
+        let read = read.map_err(|reason| Failure::unreadable(named(self.path), &reason))?;
         self.ended = (read as u64) < wanted;
         Ok(())
+    }
+
+    /// What messages call the file.
+    pub fn name(&self) -> impl Display {
+        named(self.path).display()
     }
 
     /// A line of the file is bad.
@@ -165,6 +173,6 @@ impl<'a> Rows<'a> {
 
     /// The file is bad.
     pub fn bad(&self, problem: &str) -> Failure {
-        Failure::Input(format!("{}: {problem}", self.path.display()))
+        Failure::Input(format!("{}: {problem}", self.name()))
     }
 }
