@@ -79,6 +79,25 @@ fn statistics_say_what_each_verdict_took_and_settled() {
     let plain = render("--shadows trace");
     assert_eq!(plain["shadows"], "trace");
     assert_eq!(plain["verdicts"], Value::Array(Vec::new()));
+    assert_eq!(plain["version"], env!("CARGO_PKG_VERSION"));
+    let scanline =
+        render("--shadows cache-tree --order scanline --retest not-cell --depth 3 --uniform");
+    for (key, usual, given) in [
+        ("order", "tiles".into(), "scanline".into()),
+        ("depth", 5.into(), 3.into()),
+        ("self_shadow", "offset".into(), "offset".into()),
+        ("retest", "again".into(), "not-cell".into()),
+        ("tree_depth", 10.into(), 10.into()),
+        ("reset_scanlines", false.into(), false.into()),
+        ("uniform", false.into(), true.into()),
+        ("lazy", false.into(), false.into()),
+        ("grid", Value::Null, Value::Null),
+        ("memory_limit", Value::Null, Value::Null),
+    ] {
+        let expected: [Value; 2] = [usual, given];
+        assert_eq!([&plain[key], &scanline[key]], expected.each_ref(), "{key}");
+    }
+    assert!((plain["tolerance"].as_f64().unwrap() - 0.05).abs() < 1e-6);
     let stats = render("--shadows shadow-polygons+voxel-occlusion+woo");
     assert_eq!(stats["shadows"], "voxel-occlusion+shadow-polygons+woo");
     let mut asked = stats["counts"]["shadows"]["queries"].as_u64().unwrap();

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use std::time::Instant;
 
 use clap::Args;
+use serde::Serialize;
 
 use super::failure::{Failure, say};
 use super::numbers::whole;
@@ -24,15 +25,17 @@ const MOST_VOXELS: u64 = 1 << 27;
 /// Threads at most: more than any machine has processors.
 pub(super) const MOST_THREADS: usize = 1024;
 
-/// Which engine answers.
-#[derive(Args)]
+/// Which engine answers; statistics have how it was built, and name backend, test and so on themselves.
+#[derive(Args, Serialize)]
 pub(super) struct EngineOptions {
     /// The engine that answers occlusion queries
     #[arg(long, value_enum, default_value_t = Backend::Grid)]
+    #[serde(skip)]
     pub backend: Backend,
     /// The triangle test: exact, unless the engine is embree, which has pluecker (its robust mode, the
     /// default) and moller (its default mode)
     #[arg(long, value_enum)]
+    #[serde(skip)]
     test: Option<Test>,
     /// Voxels of the grid along x, y and z, instead of a choice by the number of triangles
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_resolution)]
@@ -47,9 +50,11 @@ pub(super) struct EngineOptions {
     /// or steps aside, and says so; if not given, the shadow method takes no more than Embree's structure would, and
     /// both together no more than a quarter of the machine
     #[arg(long, value_name = "SIZE", value_parser = MemoryLimit::from_str)]
+    #[serde(skip)]
     memory: Option<MemoryLimit>,
     /// Threads; all processors if not given
     #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
+    #[serde(skip)]
     pub threads: Option<usize>,
 }
 

@@ -83,6 +83,7 @@ fn default_size(scene: &str) -> (u32, u32) {
 
 #[derive(Serialize)]
 struct Report<'a> {
+    version: &'a str,
     scene: &'a str,
     triangles: usize,
     opaque_triangles: u32,
@@ -92,13 +93,20 @@ struct Report<'a> {
     notes: &'a [String],
     backend: &'a str,
     test: &'a str,
+    #[serde(flatten)]
+    engine_options: &'a EngineOptions,
+    memory_limit: Option<u64>,
     shadows: String,
+    #[serde(flatten)]
+    shadow_options: &'a ShadowOptions,
     verdicts: Vec<Verdict>,
     /// Who answered the queries to each light, if there was a choice.
     choices: Vec<LightChoices>,
     width: u32,
     height: u32,
     samples_per_pixel: u32,
+    depth: u8,
+    order: Order,
     threads: usize,
     exposure: f32,
     backend_bytes: usize,
@@ -229,6 +237,7 @@ impl Render {
         }
         let Some(stats) = &self.stats else { return files.finish() };
         let report = Report {
+            version: env!("CARGO_PKG_VERSION"),
             scene: &scene.name,
             triangles: scene.triangles.len(),
             opaque_triangles: scene.triangles.opaque_count(),
@@ -238,12 +247,17 @@ impl Render {
             notes: &scene.notes,
             backend: self.engine.backend.name(),
             test: self.engine.test().name(),
+            engine_options: &self.engine,
+            memory_limit: self.engine.most_bytes(),
             shadows: self.shadows.name(),
+            shadow_options: &self.shadows,
             verdicts,
             choices,
             width: settings.width,
             height: settings.height,
             samples_per_pixel: settings.samples * settings.samples,
+            depth: settings.depth,
+            order: settings.order,
             threads: rayon::current_num_threads(),
             exposure,
             backend_bytes: backend.memory(),

@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use clap::Args;
+use serde::Serialize;
 
 use super::failure::{Failure, say};
 use super::numbers::{finite, whole};
@@ -17,8 +18,9 @@ use crate::shadow::{
 };
 
 /// What stands before the engine.
-#[derive(Args)]
+#[derive(Args, Serialize)]
 pub(super) struct ShadowOptions {
+    #[serde(skip)]
     #[arg(long, value_name = "METHOD", default_value_t, help = shadows_help())]
     shadows: Choice,
     /// What keeps a shadow ray from meeting the triangle that it starts on

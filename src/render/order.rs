@@ -13,7 +13,8 @@ const MOST_SAMPLES: u32 = 10_000;
 const ENOUGH: u32 = 64;
 
 /// The order in which pixels are rendered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Order {
     /// Row by row, each from left to right.
     Scanline,

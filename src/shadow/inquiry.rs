@@ -131,7 +131,8 @@ impl Inquiry for Sparing<'_> {
 }
 
 /// Whether triangles that a memory tested in vain are tested again by the traversal (§9 of the paper).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Retest {
     /// They are.
     #[default]

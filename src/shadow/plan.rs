@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use clap::ValueEnum;
+use serde::Serialize;
 
 use super::stock::Stock;
 use super::{
@@ -14,7 +15,8 @@ use crate::occlusion::Occlusion;
 use crate::scene::Scene;
 
 /// What keeps a shadow ray from meeting the triangle that it starts on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum SelfShadow {
     /// The ray starts a little off the surface.
     #[default]

@@ -79,6 +79,7 @@ struct Counts {
 
 #[derive(Serialize)]
 struct Report<'a> {
+    version: &'a str,
     scene: &'a str,
     triangles: usize,
     opaque_triangles: u32,
@@ -86,6 +87,9 @@ struct Report<'a> {
     notes: &'a [String],
     backend: &'a str,
     test: &'a str,
+    #[serde(flatten)]
+    engine_options: &'a EngineOptions,
+    memory_limit: Option<u64>,
     format: &'a str,
     threads: usize,
     backend_bytes: usize,
@@ -151,6 +155,7 @@ impl Query {
         }
         let Some(stats) = &self.stats else { return files.finish() };
         let report = Report {
+            version: env!("CARGO_PKG_VERSION"),
             scene: &scene.name,
             triangles: scene.triangles.len(),
             opaque_triangles: scene.triangles.opaque_count(),
@@ -158,6 +163,8 @@ impl Query {
             notes: &scene.notes,
             backend: self.engine.backend.name(),
             test: self.engine.test().name(),
+            engine_options: &self.engine,
+            memory_limit: self.engine.most_bytes(),
             format: rows.format.name(),
             threads: rayon::current_num_threads(),
             backend_bytes: backend.memory(),
