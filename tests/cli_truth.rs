@@ -69,6 +69,19 @@ fn extremes_prints_a_line_a_case_and_writes_every_engine_and_test() {
     }
 }
 
+#[cfg(feature = "embree")]
+#[test]
+fn extremes_says_whom_it_leaves_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "extremes --queries 10 --cases grazing --backends grid,embree --tests watertight";
+    let output = run(folder.path(), line);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let told = "left out: embree watertight: embree has no test 'watertight'";
+    assert!(said(&output).contains(told), "{}", said(&output));
+    let output = run(folder.path(), "extremes --queries 10 --cases grazing --backends embree");
+    assert!(!said(&output).contains("left out"), "{}", said(&output));
+}
+
 #[test]
 fn what_makes_no_sense_is_refused() {
     let folder = tempfile::tempdir().unwrap();

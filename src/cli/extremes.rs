@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::failure::Failure;
+use super::failure::{Failure, say};
 use super::numbers::whole;
 use super::options::{MOST_THREADS, pool_for};
 use super::outputs::{print_beside_files, write_json};
 use super::progress::with_word;
+use crate::measure::contender;
 use crate::measure::extremes::cases::{Case, cases};
 use crate::measure::extremes::{Conditions, Report, examine, head};
 use crate::occlusion::{Backend, BackendError, Test};
@@ -62,6 +63,9 @@ impl Extremes {
             let reason = BackendError::NotInEmbree(test);
             return Err(Failure::Input(format!("nothing to test: {reason}")));
         }
+        for reason in self.left_out() {
+            say!("umbra: left out: {reason}");
+        }
         let wanted = |case: &Case| self.cases.is_empty() || self.cases.contains(&case.name);
         let cases: Vec<_> = cases().into_iter().filter(wanted).collect();
         let writes_files = self.stats.is_some();
@@ -79,6 +83,12 @@ impl Extremes {
             0 => Ok(()),
             defects => Err(Failure::Comparison(format!("umbra is wrong in {defects} cases"))),
         }
+    }
+
+    /// Combinations that were asked for but do not exist, and why.
+    fn left_out(&self) -> Vec<String> {
+        let (backends, tests) = (self.backends.clone(), self.tests.clone());
+        contender::Choice { backends, tests, ..contender::Choice::default() }.select().left_out
     }
 
     fn conditions(&self) -> Conditions {
