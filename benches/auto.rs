@@ -36,7 +36,7 @@ fn main() {
     };
     let samples = samples.parse().expect(USAGE);
     for scene in scenes {
-        match load(&common::path_of(scene).to_string_lossy()) {
+        match load(common::path_of(scene)) {
             Ok(scene) => row(&scene, samples),
             Err(error) => eprintln!("*** NOT MEASURED: {error} ***"),
         }

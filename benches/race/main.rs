@@ -69,7 +69,7 @@ fn main() {
     for group in groups(words, lights) {
         let mut outcomes = Vec::new();
         for name in &group.scenes {
-            match load(&path_of(name).to_string_lossy()) {
+            match load(path_of(name)) {
                 Ok(mut scene) => {
                     if let Some(count) = group.lights {
                         lights::give(&mut scene, count);

@@ -1,6 +1,6 @@
 //! `umbra compare`: the same shadow rays through several engines, and the truth about each.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use clap::Args;
@@ -42,7 +42,7 @@ Examples:
 #[command(after_help = DETAILS)]
 pub(super) struct Compare {
     /// A built-in scene, or an .obj, .glb, .gltf or .toml file
-    scene: String,
+    scene: PathBuf,
     #[command(flatten)]
     contenders: ContenderOptions,
     /// Size of the picture whose shadow rays are compared
@@ -102,7 +102,7 @@ impl Compare {
         let picture = self.difference.as_ref().map(|path| Picture::of(path, 8)).transpose()?;
         let outputs = [&self.list, &self.difference, &self.stats];
         let outputs: Vec<_> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
-        check_outputs(&outputs, &[Path::new(&self.scene)])?;
+        check_outputs(&outputs, &[&self.scene])?;
         let pool = pool(self.threads)?;
 
         let scene = load_scene(&self.scene, &outputs)?;

@@ -291,8 +291,8 @@ pub(super) fn pool_for(
 
 /// Loads a scene, and says what the program decided for the user. No output may replace a file of the scene; which
 /// they are is known only now.
-pub(super) fn load_scene(name: &str, outputs: &[&Path]) -> Result<Scene, Failure> {
-    let scene = with_word(&format!("loading {name}"), || crate::scene::load(name))?;
+pub(super) fn load_scene(scene: &Path, outputs: &[&Path]) -> Result<Scene, Failure> {
+    let scene = with_word(&format!("loading {}", scene.display()), || crate::scene::load(scene))?;
     check_apart(outputs, &scene.files)?;
     for note in &scene.notes {
         say!("umbra: {}: {note}", scene.name);

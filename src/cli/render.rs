@@ -31,7 +31,7 @@ Examples:
 #[command(after_help = DETAILS)]
 pub(super) struct Render {
     /// A built-in scene, or an .obj, .glb, .gltf or .toml file
-    scene: String,
+    scene: PathBuf,
     /// The picture to write: .png or .exr
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -76,9 +76,9 @@ pub(super) struct Render {
 const SHOWN_LIGHTS: usize = 4;
 
 /// The paper's size of a picture of its scenes; that of most of them for other scenes.
-fn default_size(scene: &str) -> (u32, u32) {
+fn default_size(scene: &Path) -> (u32, u32) {
     let Settings { width, height, .. } = Settings::default();
-    builtin::view(scene).map_or((width, height), |view| (view.width, view.height))
+    scene.to_str().and_then(builtin::view).map_or((width, height), |view| (view.width, view.height))
 }
 
 #[derive(Serialize)]
@@ -147,7 +147,7 @@ impl Render {
         let pictures = self.aov.then(|| PICTURES.map(|what| beside(&self.output, what)));
         let outputs = std::iter::once(&self.output).chain(pictures.iter().flatten());
         let outputs: Vec<_> = outputs.chain(&self.stats).map(PathBuf::as_path).collect();
-        check_outputs(&outputs, &[Path::new(&self.scene)])?;
+        check_outputs(&outputs, &[&self.scene])?;
         let pool = self.engine.pool()?;
         pool.install(|| self.render(kind, &settings, &outputs))
     }

@@ -1,6 +1,6 @@
 //! `umbra tradeoff`: speed against accuracy, measured, plotted and reported.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
@@ -37,7 +37,7 @@ Examples:
 #[command(after_help = DETAILS)]
 pub(super) struct Tradeoff {
     /// A built-in scene, or an .obj, .glb, .gltf or .toml file
-    scene: String,
+    scene: PathBuf,
     #[command(flatten)]
     contenders: ContenderOptions,
     /// Size of the picture whose shadow rays are answered
@@ -83,7 +83,7 @@ impl Tradeoff {
         conditions.check()?;
         let outputs = [&self.stats, &self.csv, &self.svg, &self.html];
         let outputs: Vec<_> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
-        check_outputs(&outputs, &[Path::new(&self.scene)])?;
+        check_outputs(&outputs, &[&self.scene])?;
         let pool = pool(self.threads)?;
         let scene = load_scene(&self.scene, &outputs)?;
         // Of combinations that nobody named, nobody misses those that do not exist.
@@ -180,7 +180,8 @@ impl Tradeoff {
 
 /// What this process was started with, as one would write it.
 fn command_line() -> String {
-    let arguments = std::env::args().skip(1).map(|argument| {
+    let arguments = std::env::args_os().skip(1).map(|argument| {
+        let argument = argument.display().to_string();
         let is_plain = |c: char| c.is_alphanumeric() || "-_./,=:".contains(c);
         match !argument.is_empty() && argument.chars().all(is_plain) {
             true => argument,

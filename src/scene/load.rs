@@ -4,7 +4,7 @@ use std::{
     borrow::Cow,
     fs,
     io::{self, Read},
-    path::{Path, PathBuf},
+    path::Path,
 };
 
 use super::{Draft, Scene, SceneError, builtin, gltf, obj, toml};
@@ -17,7 +17,7 @@ const READABLE: &str = ".obj, .glb, .gltf and .toml";
 ///
 /// # Errors
 /// What is wrong with the name or the file, in one line.
-pub fn load(name_or_path: &str) -> Result<Scene, SceneError> {
+pub fn load(name_or_path: impl AsRef<Path>) -> Result<Scene, SceneError> {
     draft(name_or_path)?.finish()
 }
 
@@ -25,15 +25,15 @@ pub fn load(name_or_path: &str) -> Result<Scene, SceneError> {
 ///
 /// # Errors
 /// What is wrong with the name or the file, in one line.
-pub fn draft(name_or_path: &str) -> Result<Draft, SceneError> {
-    if builtin::NAMES.contains(&name_or_path) {
-        return builtin::draft_at(name_or_path, 1.0);
+pub fn draft(name_or_path: impl AsRef<Path>) -> Result<Draft, SceneError> {
+    let path = name_or_path.as_ref();
+    if let Some(name) = path.to_str().filter(|name| builtin::NAMES.contains(name)) {
+        return builtin::draft_at(name, 1.0);
     }
-    let path = Path::new(name_or_path);
     match extension(path).as_str() {
         "toml" => toml::read(path),
         _ if is_mesh(path) => read_mesh(path),
-        _ => Err(not_a_scene(name_or_path)),
+        _ => Err(not_a_scene(path)),
     }
 }
 
@@ -110,13 +110,12 @@ fn directory() -> io::Error {
 }
 
 /// Why a name without a readable extension is no scene.
-fn not_a_scene(name: &str) -> SceneError {
-    let path = PathBuf::from(name);
+fn not_a_scene(path: &Path) -> SceneError {
     if path.is_dir() {
-        return SceneError::Unreadable { path, reason: directory() };
+        return SceneError::Unreadable { path: path.into(), reason: directory() };
     }
     if path.exists() {
-        return malformed(&path, format!("unknown kind of file; umbra reads {READABLE}"));
+        return malformed(path, format!("unknown kind of file; umbra reads {READABLE}"));
     }
-    SceneError::Unknown { name: name.to_owned(), known: builtin::NAMES.join(", ") }
+    SceneError::Unknown { name: path.display().to_string(), known: builtin::NAMES.join(", ") }
 }

@@ -53,7 +53,7 @@ Examples:
 #[command(after_help = DETAILS)]
 pub(super) struct Query {
     /// A built-in scene, or an .obj, .glb, .gltf or .toml file
-    scene: String,
+    scene: PathBuf,
     /// The rays: CSV or .npy; - for standard input
     #[arg(long, value_name = "FILE")]
     rays: PathBuf,
@@ -109,7 +109,7 @@ struct Done {
 
 impl Query {
     pub fn run(self) -> Result<(), Failure> {
-        let (scene, rays) = (Path::new(&self.scene), &*self.rays);
+        let (scene, rays) = (&*self.scene, &*self.rays);
         let output = (!is_stream(&self.output)).then_some(&self.output);
         let outputs: Vec<_> = output.into_iter().chain(&self.stats).map(PathBuf::as_path).collect();
         self.engine.check()?;
