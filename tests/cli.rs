@@ -268,6 +268,18 @@ fn a_full_disk_is_said_to_be_full() {
     assert_refusal(&run(workplace().path(), line), &["cannot write /dev/full", "No space left"]);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn help_that_standard_output_does_not_take_is_a_failure() {
+    let folder = workplace();
+    for line in ["--help", "--version", "render --help"] {
+        let mut command = umbra(folder.path());
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let output = command.args(line.split(' ')).stdout(full).output().unwrap();
+        assert_refusal(&output, &["cannot write standard output: No space left"]);
+    }
+}
+
 /// Permission bits do not bind root; so there the program runs as a user whom they bind.
 #[cfg(target_os = "linux")]
 #[test]

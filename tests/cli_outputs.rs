@@ -199,3 +199,44 @@ fn a_name_that_is_too_long_is_refused_before_anything_is_rendered_or_replaced() 
     let line = format!("render mesh.obj -o {name} --size 8x6 --aov");
     refused(folder.path(), &line, &["cannot write", ".png"]);
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn names_of_files_need_not_be_text() {
+    use std::os::unix::ffi::OsStrExt;
+    let name = |bytes| std::ffi::OsStr::from_bytes(bytes);
+    let (mesh, picture, page) = (name(b"\xff.obj"), name(b"\xff.png"), name(b"\xff.html"));
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join(mesh), TRIANGLE).unwrap();
+    let mut command = umbra(folder.path());
+    command.args(["render", "--size", "8x6", "-o"]).args([picture, mesh]);
+    succeeded(&command.output().unwrap());
+    let mut command = umbra(folder.path());
+    command.args(["tradeoff", "--quick", "--size", "8x6", "--backends", "grid", "--html"]);
+    succeeded(&command.args([page, mesh]).output().unwrap());
+    assert!(folder.path().join(picture).is_file() && folder.path().join(page).is_file());
+}
+
+#[test]
+fn one_thing_is_no_plural() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "mesh.obj", TRIANGLE);
+    write(folder.path(), "rays.csv", "1,1,1,1,1,-1\n");
+    let output = run(folder.path(), "render mesh.obj -o a.png --size 8x6");
+    assert!(said(&output).contains("mesh.obj: 1 triangle, 1 light, grid"), "{}", said(&output));
+    let output = run(folder.path(), "query mesh.obj --rays rays.csv -o out.csv");
+    assert!(said(&output).contains("; 1 row, 1 blocked"), "{}", said(&output));
+}
+
+#[test]
+fn a_picture_without_shadow_queries_is_refused_in_the_same_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let away = "[camera]\nposition = [0, 0, 5]\ntarget = [0, 0, 9]\n";
+    let triangle = "[[mesh]]\ntriangles = [[[0, 0, 0], [4, 0, 0], [0, 4, 0]]]\n";
+    let light = "[[light]]\nkind = \"point\"\nposition = [0, 0, 1]\nintensity = [1, 1, 1]\n";
+    write(folder.path(), "away.toml", &format!("{away}{triangle}{light}"));
+    for line in ["compare away.toml --size 8x6", "tradeoff away.toml --size 8x6 --quick"] {
+        let told = "away.toml: no shadow query is asked in this picture; give the scene another";
+        refused(folder.path(), &format!("{line} --backends grid"), &[told]);
+    }
+}

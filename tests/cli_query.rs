@@ -176,7 +176,7 @@ fn a_segment_longer_than_f32_is_said_to_be_so() {
     fs::write(folder.join("rays.csv"), "0,1e38,-3e38,0,1e38,3e38\n").unwrap();
     let output = run(folder, "query triangle.obj --rays rays.csv -o out.csv");
     succeeded(&output);
-    let told = "1 rows with NaN or infinity, or in which a number or target - origin is beyond f32";
+    let told = "1 row with NaN or infinity, or in which a number or target - origin is beyond f32";
     assert!(said(&output).contains(told), "{}", said(&output));
 }
 

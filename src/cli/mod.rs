@@ -15,6 +15,7 @@ mod scene;
 mod shadows;
 mod tradeoff;
 
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -80,10 +81,9 @@ pub fn main() -> ExitCode {
         Ok(Cli { command: Command::Extremes(extremes) }) => extremes.run(),
         Ok(Cli { command: Command::Scene(scene) }) => scene.run(),
         Err(error) => match error.kind() {
-            // A closed pipe is no failure.
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-                let _ = error.print();
-                return ExitCode::SUCCESS;
+                let printed = error.print().and_then(|()| io::stdout().flush());
+                printed.map_err(|reason| outputs::unprinted(&reason))
             }
             ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
                 let _ = error.print();

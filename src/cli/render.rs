@@ -7,7 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::numbers::{positive, whole};
+use super::numbers::{count, positive, whole};
 use super::options::{Built, EngineOptions, MOST_DEPTH, load_scene, parse_size};
 use super::outputs::{Outputs, check_outputs};
 use super::progress::with_bar;
@@ -169,9 +169,9 @@ impl Render {
         let load_seconds = start.elapsed().as_secs_f64();
         if let Some(light) = self.aov_light.filter(|&light| light as usize >= scene.lights.len()) {
             return Err(Failure::Input(format!(
-                "--aov-light {light}: {} has {} lights, numbered from 0",
+                "--aov-light {light}: {} has {}, numbered from 0",
                 scene.name,
-                scene.lights.len()
+                count(scene.lights.len() as u64, "light")
             )));
         }
         let built = self.engine.build(&scene)?;
@@ -213,14 +213,14 @@ impl Render {
             }
         }
         say!(
-            "{}: {} triangles, {} lights, {} {} {}; {} rays ({} to lights, {} of them blocked) in {:.2} s: {:.2} million a second; loaded in {:.2} s, built in {:.2} s",
+            "{}: {}, {}, {} {} {}; {} ({} to lights, {} of them blocked) in {:.2} s: {:.2} million a second; loaded in {:.2} s, built in {:.2} s",
             scene.name,
-            scene.triangles.len(),
-            scene.lights.len(),
+            count(scene.triangles.len() as u64, "triangle"),
+            count(scene.lights.len() as u64, "light"),
             self.engine.backend,
             self.engine.test(),
             self.shadows.name(),
-            rays.total(),
+            count(rays.total(), "ray"),
             rays.shadow,
             statistics.shadows.blocked,
             render_seconds,
@@ -233,7 +233,8 @@ impl Render {
             say!("umbra: {light}");
         }
         if choices.len() > SHOWN_LIGHTS {
-            say!("umbra: and {} more lights, see --stats FILE", choices.len() - SHOWN_LIGHTS);
+            let more = count((choices.len() - SHOWN_LIGHTS) as u64, "more light");
+            say!("umbra: and {more}, see --stats FILE");
         }
         let Some(stats) = &self.stats else { return files.finish() };
         let report = Report {

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::numbers::finite;
+use super::numbers::{count, finite};
 use super::outputs::{Outputs, check_outputs};
 use super::progress::with_word;
 use crate::scene::{self, builtin};
@@ -83,7 +83,10 @@ impl SceneFile {
             outputs.add_json(stats, &report)?;
         }
         outputs.finish()?;
-        say!("{}: {triangles} triangles, {materials} materials, {lights} lights", self.name);
+        let [triangles, materials, lights] =
+            [(triangles, "triangle"), (materials, "material"), (lights, "light")]
+                .map(|(number, one)| count(number as u64, one));
+        say!("{}: {triangles}, {materials}, {lights}", self.name);
         Ok(())
     }
 }

@@ -27,8 +27,10 @@ pub enum MeasureError {
     #[error(transparent)]
     Queries(#[from] TooManyQueries),
     /// Nothing to answer.
-    #[error("the picture asks no shadow query: no surface in it faces a light")]
-    NoQueries,
+    #[error(
+        "{0}: no shadow query is asked in this picture; give the scene another camera or light"
+    )]
+    NoQueries(String),
     /// Nothing would be measured.
     #[error("repetitions 0: give at least 1")]
     Repetitions,

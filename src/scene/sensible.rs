@@ -87,11 +87,12 @@ pub(super) fn add_lights(scene: &mut Scene) {
     let found = emitters::lights(scene);
     let mut added = Vec::new();
     if !found.lights.is_empty() {
-        let all = match found.surfaces - found.lights.len() {
-            0 => format!("each of its {}", found.surfaces),
-            _ => format!("the {} brightest of its {}", found.lights.len(), found.surfaces),
+        let chosen = match (found.lights.len(), found.surfaces) {
+            (_, 1) => "its emissive surface".to_owned(),
+            (lights, all) if lights == all => format!("each of its {all} emissive surfaces"),
+            (lights, all) => format!("the {lights} brightest of its {all} emissive surfaces"),
         };
-        added.push(format!("a point light before {all} emissive surfaces"));
+        added.push(format!("a point light before {chosen}"));
     }
     if found.share < LEAST_SHARE {
         let lamp = Walls::of(scene).lamp_for(&scene.camera, Vec3::splat(SUN));

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
+use super::numbers::count;
 use super::options::{Built, EngineOptions, load_scene};
 use super::outputs::{Outputs, STANDARD_OUTPUT, check_outputs, unprinted};
 use super::progress::with_rate;
@@ -137,20 +138,20 @@ impl Query {
         let query_seconds = start.elapsed().as_secs_f64();
         let rows_per_second = counts.rows as f64 / query_seconds;
         say!(
-            "{}: {} triangles, {} {}; {} rows, {} blocked, in {query_seconds:.2} s: {:.2} million a second; loaded in {load_seconds:.2} s, built in {build_seconds:.2} s",
+            "{}: {}, {} {}; {}, {} blocked, in {query_seconds:.2} s: {:.2} million a second; loaded in {load_seconds:.2} s, built in {build_seconds:.2} s",
             scene.name,
-            scene.triangles.len(),
+            count(scene.triangles.len() as u64, "triangle"),
             self.engine.backend,
             self.engine.test(),
-            counts.rows,
+            count(counts.rows, "row"),
             counts.blocked,
             rows_per_second / 1e6,
         );
         if counts.invalid > 0 {
             say!(
-                "umbra: {}: {} rows with NaN or infinity, or in which a number or target - origin is beyond f32, are answered 0",
-                self.rays.display(),
-                counts.invalid
+                "umbra: {}: {} with NaN or infinity, or in which a number or target - origin is beyond f32: answered 0",
+                rows.name(),
+                count(counts.invalid, "row")
             );
         }
         let Some(stats) = &self.stats else { return files.finish() };

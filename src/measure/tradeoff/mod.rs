@@ -197,7 +197,7 @@ pub fn measure(
     Recording::check(scene, settings)?;
     let recording = Recording::of(scene, settings, &Progress::default())?;
     if recording.queries().is_empty() {
-        return Err(MeasureError::NoQueries);
+        return Err(MeasureError::NoQueries(scene.name.clone()));
     }
     let (_, film) = pictures::picture(scene, settings)?;
     let measured = engines::measure(scene, &recording, conditions, progress)?;

@@ -142,7 +142,7 @@ impl fmt::Display for Why {
                 milliseconds(price),
                 milliseconds(spent)
             ),
-            (Some(cost), _) if trials > 0 => write!(f, "dearer in trials: {cost:.0} ns a query"),
+            (Some(cost), _) if trials > 0 => write!(f, "only in trials: {cost:.0} ns a query"),
             (_, Some(Hindrance::NotBuilt { price, saving })) => write!(
                 f,
                 "not built for this light: that takes {:.1} ms or more, and would have saved {:.1} ms",
