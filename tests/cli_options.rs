@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::command::{TRIANGLE, refused, run, said};
+use common::command::{TRIANGLE, refused, run, said, umbra};
 use tempfile::TempDir;
 
 fn folder() -> TempDir {
@@ -69,5 +69,45 @@ fn options_that_would_change_nothing_are_refused() {
     if cfg!(feature = "embree") {
         let line = "compare drum --size 8x6 --backends grid --embree-variants all";
         refused(folder.path(), line, &["--embree-variants", "embree"]);
+        let line = "paper --quick --backends embree --retest not-cell";
+        refused(folder.path(), line, &["--retest", "another engine"]);
+        let line = "render drum -o out.png --backend embree --tree-depth 2";
+        refused(folder.path(), line, &["--tree-depth", "--shadows auto"]);
+    }
+}
+
+#[test]
+fn options_that_may_change_something_are_taken() {
+    let folder = folder();
+    for arguments in [
+        "--order scanline --reset-scanlines",
+        "--tree-depth 2 --retest not-cell",
+        "--shadows trace --self-shadow exclude --retest not-triangles",
+        "--shadows object-cache --retest not-triangles",
+        "--shadows cache-tree-tolerance --tree-depth 2 --tolerance 0.5",
+        "--shadows trace --tolerance 0.05 --retest again",
+    ] {
+        let line = format!("render triangle.obj -o out.png --size 8x6 {arguments}");
+        let output = run(folder.path(), &line);
+        assert!(output.status.success(), "{arguments}: {}", said(&output));
+    }
+}
+
+#[test]
+fn a_number_that_is_too_large_is_not_called_too_small() {
+    let line = "certify --queries 99999999999999999999";
+    refused(folder().path(), line, &["--queries", "too large", "a smaller"]);
+}
+
+#[test]
+fn names_in_a_list_may_have_blanks_around_them() {
+    let folder = folder();
+    for arguments in [
+        &["compare", "drum", "--size", "8x6", "--backends", "grid, bvh2 ", "--tests", "exact"][..],
+        &["extremes", "--queries", "9", "--cases", "slivers, grazing", "--backends", "grid , bvh2"],
+        &["certify", "--queries", "9", "--classes", "sliver, grazing"],
+    ] {
+        let output = umbra(folder.path()).args(arguments).output().unwrap();
+        assert!(output.status.success(), "{arguments:?}: {}", said(&output));
     }
 }

@@ -8,6 +8,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
+use super::lists::among;
 use super::numbers::whole;
 use super::options::{MOST_THREADS, pool_for};
 use super::outputs::{print_beside_files, write_json};
@@ -40,7 +41,7 @@ pub(super) struct Certify {
     queries: u64,
     /// Kinds of queries; all if not given
     #[arg(long, value_name = "NAMES", value_delimiter = ',',
-          value_parser = clap::builder::PossibleValuesParser::new(Class::ALL.iter().map(|class| class.name())))]
+          value_parser = among(Class::ALL.iter().map(|class| class.name())))]
     classes: Vec<String>,
     /// Stops after so long, with as many queries as there was time for
     #[arg(long, value_name = "S", value_parser = whole(1u64..))]

@@ -6,6 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
+use super::lists::known;
 use super::numbers::whole;
 use super::options::{MOST_THREADS, pool_for};
 use super::outputs::{print_beside_files, write_json};
@@ -37,10 +38,10 @@ pub(super) struct Extremes {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = parse_case)]
     cases: Vec<String>,
     /// The engines; all if not given
-    #[arg(long, value_enum, value_delimiter = ',')]
+    #[arg(long, value_delimiter = ',', value_parser = known::<Backend>())]
     backends: Vec<Backend>,
     /// The triangle tests; all if not given
-    #[arg(long, value_enum, value_delimiter = ',')]
+    #[arg(long, value_delimiter = ',', value_parser = known::<Test>())]
     tests: Vec<Test>,
     /// Threads; all processors if not given
     #[arg(long, value_name = "N", value_parser = whole(1..=MOST_THREADS))]
@@ -104,6 +105,7 @@ impl Extremes {
 }
 
 fn parse_case(name: &str) -> Result<String, String> {
+    let name = name.trim();
     let names: Vec<_> = cases().into_iter().map(|case| case.name).collect();
     if names.iter().any(|known| known == name) {
         return Ok(name.to_owned());

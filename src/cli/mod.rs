@@ -4,6 +4,7 @@ mod certify;
 mod compare;
 mod extremes;
 mod failure;
+mod lists;
 mod numbers;
 mod options;
 mod outputs;

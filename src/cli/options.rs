@@ -8,6 +8,9 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
+#[cfg(feature = "embree")]
+use super::lists::any;
+use super::lists::known;
 use super::numbers::whole;
 use super::outputs::{check_apart, check_outputs};
 use super::progress::with_word;
@@ -246,17 +249,17 @@ pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure>
 #[derive(Args)]
 pub(super) struct ContenderOptions {
     /// The engines; all but brute if not given
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    #[arg(long, value_delimiter = ',', value_name = "LIST", value_parser = known::<Backend>())]
     backends: Vec<Backend>,
     /// The triangle tests; all if not given
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    #[arg(long, value_delimiter = ',', value_name = "LIST", value_parser = known::<Test>())]
     tests: Vec<Test>,
     /// The methods that stand before the engines, as --shadows of render has them
     #[arg(long, value_delimiter = ',', value_name = "LIST", value_parser = super::shadows::parse_method)]
     pub methods: Vec<Combination>,
     /// The ways to use Embree: names like avx2-high-8-coherent, `default`, or `all`
     #[cfg(feature = "embree")]
-    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    #[arg(long, value_delimiter = ',', value_name = "LIST", value_parser = any())]
     pub embree_variants: Vec<String>,
 }
 

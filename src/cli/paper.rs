@@ -8,6 +8,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
+use super::lists::known;
 use super::numbers::{finite, whole};
 use super::options::{MOST_DEPTH, only_over, parse_resolution, parse_size};
 use super::outputs::{check_outputs, print_beside_files, write_json};
@@ -53,7 +54,7 @@ pub(super) struct Paper {
     #[arg(long, value_name = "NAME", value_parser = clap::builder::PossibleValuesParser::new(NAMES))]
     scene: Vec<String>,
     /// The engines, a column each; all but brute if not given
-    #[arg(long, value_enum, value_delimiter = ',')]
+    #[arg(long, value_delimiter = ',', value_parser = known::<Backend>())]
     backends: Vec<Backend>,
     /// The triangle test of all engines; each one's own choice if not given
     #[arg(long, value_enum)]
