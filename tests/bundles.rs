@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::Random;
 use common::lit::{point, scene, sun};
 use glam::{DVec3, Vec3, vec3};
@@ -255,6 +257,55 @@ fn rays_to_a_sun_meet_what_they_touch_far_away() {
         for count in [1, 5, 16, 300] {
             for asked in asked.chunks(count) {
                 check_all(&scene, asked.to_vec());
+            }
+        }
+    }
+}
+
+/// Suns have directions of unit length once a scene is finished, but its fields are public.
+#[test]
+fn suns_of_any_length_lose_no_blocker() {
+    let mut random = Random(11);
+    for reach in [1.0, 1e6] {
+        let mesh: Vec<Triangle> = (0..40)
+            .map(|_| {
+                let place = random.in_cube(reach);
+                [(); 3].map(|()| place + random.in_cube(0.5 * reach))
+            })
+            .collect();
+        let mut scene = scene(&mesh, vec![sun(Vec3::Y)]);
+        for power in -44..38 {
+            let length = 10f64.powi(power);
+            let direction = length * DVec3::new(0.48, 0.36, 0.8);
+            scene.lights[0] = Light::Directional { direction, irradiance: Vec3::ONE };
+            let ray = |_| query(scene.lights[0].shadow_ray(random.in_cube(reach)));
+            let asked: Vec<ShadowQuery> = (0..256).map(ray).collect();
+            for kind in VerdictKind::ALL {
+                check(&scene, kind, &[(0, asked.clone())], &format!("length {length:e}"));
+            }
+            for asked in asked.iter().take(32) {
+                check(&scene, VerdictKind::Shaft, &[(0, vec![*asked])], "alone");
+            }
+        }
+    }
+}
+
+/// A triangle that is not finite blocks nothing, and shares no edge with one that is.
+#[test]
+fn a_broken_triangle_opens_no_other() {
+    let roof = [vec3(-0.3, 0.5, -0.4), vec3(0.4, 0.5, -0.2), vec3(0.0, 0.5, 0.4)];
+    let floor = [vec3(-1.0, -1.0, -1.0), vec3(1.0, -1.0, -1.0), vec3(0.0, -1.0, 1.0)];
+    let mut scene = scene(&[floor], vec![point(vec3(0.1, 3.0, 0.05))]);
+    let place = |number: usize| number as f32 / 16.0 - 0.97;
+    let origins = (0..1024).map(|number| vec3(place(number % 32), -0.6, place(number / 32)));
+    let asked: Vec<_> = origins.map(|origin| query(scene.lights[0].shadow_ray(origin))).collect();
+    for beyond in [f32::NAN, f32::INFINITY] {
+        let broken = [roof[0], roof[1], vec3(beyond, 0.0, 0.0)];
+        for mesh in [[broken, roof, floor], [roof, broken, floor]] {
+            scene.triangles = Arc::new(mesh.into_iter().collect());
+            scene.material_of = vec![0; 3];
+            for kind in VerdictKind::ALL {
+                check(&scene, kind, &[(0, asked.clone())], "beside a broken triangle");
             }
         }
     }

@@ -22,6 +22,7 @@ impl Brute {
 
 impl Walk for Brute {
     const INLINED: bool = false;
+    const CULLS: bool = false;
 
     #[inline(always)]
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, _: &Ray, visitor: &mut V) {

@@ -8,8 +8,8 @@ use super::any::{AnyOccluders, OccluderIn};
 use super::eight::{Eight, WIDTH};
 use super::nearest::NearestHit;
 use super::sparing::SparingOccluder;
-use super::walk::walk_any;
-use super::{Cell, LeftOut, Nearest, Occluder, Occlusion, Tally, Visit, Walk};
+use super::transparent::{AllTransparent, among_transparent};
+use super::{Cell, LeftOut, Nearest, NestedGrid, Occluder, Occlusion, Tally, Walk};
 use crate::geometry::intersect::{Claims, RayLanes, TriangleTest};
 use crate::geometry::lanes::{Arithmetic, Kernel, Lanes, LanesJob};
 use crate::geometry::{Ray, TriangleId, Triangles};
@@ -18,6 +18,8 @@ use crate::geometry::{Ray, TriangleId, Triangles};
 pub struct Engine<W, T> {
     triangles: Arc<Triangles>,
     walk: W,
+    /// Over the transparent triangles alone, where they are the lesser part.
+    transparent: Option<NestedGrid>,
     arithmetic: Arithmetic,
     test: PhantomData<T>,
 }
@@ -31,7 +33,8 @@ impl<W: Walk, T: TriangleTest> Engine<W, T> {
     pub fn new(triangles: Arc<Triangles>, walk: W, arithmetic: Option<Arithmetic>) -> Self {
         let arithmetic = arithmetic.unwrap_or_else(Arithmetic::of_this_cpu);
         assert!(arithmetic.is_available(), "this CPU has no {} arithmetic", arithmetic.name());
-        Self { triangles, walk, arithmetic, test: PhantomData }
+        let transparent = W::CULLS.then(|| among_transparent(&triangles)).flatten();
+        Self { triangles, walk, transparent, arithmetic, test: PhantomData }
     }
 
     /// The culler.
@@ -42,6 +45,11 @@ impl<W: Walk, T: TriangleTest> Engine<W, T> {
 
     pub(super) fn triangles(&self) -> &Triangles {
         &self.triangles
+    }
+
+    /// What finds the transparent triangles alone, if there is something that does.
+    pub(super) fn among_transparent(&self) -> Option<&NestedGrid> {
+        self.transparent.as_ref()
     }
 
     /// Runs a job compiled for the instruction set of the arithmetic, which `new` checked.
@@ -123,7 +131,7 @@ impl<W: Walk, T: TriangleTest> Occlusion for Engine<W, T> {
     }
 
     fn memory(&self) -> usize {
-        self.walk.memory()
+        self.walk.memory() + self.transparent.as_ref().map_or(0, Walk::memory)
     }
 }
 
@@ -271,58 +279,5 @@ impl<W: Walk, T: TriangleTest> Job<W, T> for One<'_> {
         let stop = |_| ControlFlow::Break(());
         test_each::<T, L>(&engine.triangles, ray, &lanes, &[triangle], tally, |_| true, stop)
             .is_break()
-    }
-}
-
-struct AllTransparent<'a> {
-    ray: &'a Ray,
-    found: &'a mut Vec<TriangleId>,
-    tally: &'a mut Tally,
-}
-
-impl<W: Walk, T: TriangleTest> Job<W, T> for AllTransparent<'_> {
-    type Answer = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, engine: &Engine<W, T>) {
-        if !admit(self.ray, self.tally) {
-            return;
-        }
-        self.tally.traversals += 1;
-        let lanes = RayLanes::<L>::of::<T>(self.ray);
-        let mut visitor = TransparentVisitor::<T, L> {
-            triangles: &engine.triangles,
-            job: self,
-            lanes,
-            test: PhantomData,
-        };
-        let ray = visitor.job.ray;
-        walk_any::<W, L>(&engine.walk, ray, &mut visitor);
-    }
-}
-
-struct TransparentVisitor<'a, T, L> {
-    triangles: &'a Triangles,
-    job: AllTransparent<'a>,
-    lanes: RayLanes<L>,
-    test: PhantomData<T>,
-}
-
-impl<T: TriangleTest, L: Lanes> Visit for TransparentVisitor<'_, T, L> {
-    #[inline(always)]
-    fn visit(&mut self, _: Cell, ids: &[TriangleId]) -> ControlFlow<()> {
-        let AllTransparent { ray, found, tally } = &mut self.job;
-        tally.cells += 1;
-        let opaque = self.triangles.opaque_count();
-        let wanted = |id| id >= opaque;
-        test_each::<T, L>(self.triangles, ray, &self.lanes, ids, tally, wanted, |triangle| {
-            found.push(triangle);
-            ControlFlow::Continue(())
-        })
-    }
-
-    #[inline(always)]
-    fn end(&self) -> f32 {
-        self.job.ray.end
     }
 }

@@ -25,6 +25,7 @@ mod levels;
 mod nearest;
 mod sparing;
 mod tally;
+mod transparent;
 mod walk;
 
 use std::any::Any;

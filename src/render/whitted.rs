@@ -18,7 +18,7 @@ use super::{Answered, Progress, Settings, Statistics};
 use crate::geometry::{Ray, TriangleId};
 use crate::occlusion::{Occlusion, Tally};
 use crate::scene::{Illumination, Scene};
-use crate::shadow::{Answer, Attenuation, Path, Prepared, ShadowQuery, Shadows, Verdict};
+use crate::shadow::{Answer, Attenuation, Glass, Path, Prepared, ShadowQuery, Shadows};
 
 /// Rays that carry less than this share of a pixel's light are not followed.
 const LEAST_THROUGHPUT: f32 = 1.0 / 1024.0;
@@ -58,11 +58,10 @@ pub(super) struct Unit<'a> {
     /// Whether shadow rays start on the surface, and leave out the triangle that they start on.
     leaves_out_spawner: bool,
     attenuation: Attenuation,
-    /// What proves that queries meet nothing transparent.
-    glass: Option<&'a dyn Verdict>,
-    /// Queries that are not blocked, and what it says of them.
+    /// What finds the transparent triangles that queries meet.
+    glass: Option<&'a dyn Glass>,
+    /// Queries that are not blocked.
     lit: Vec<ShadowQuery>,
-    clear: Vec<Option<bool>>,
     /// Kept from batch to batch, as all of these, lest every sample allocate its own.
     generation: Vec<Seeing>,
     vertices: Vec<Vertex>,
@@ -118,9 +117,8 @@ impl<'a> Unit<'a> {
             offset: offset_of(scene),
             leaves_out_spawner: shadows.leaves_out_spawner(),
             attenuation: Attenuation::default(),
-            glass: scene.has_transparent().then(|| shadows.glass()).flatten(),
+            glass: shadows.glass(),
             lit: Vec::new(),
-            clear: Vec::new(),
             generation: Vec::new(),
             vertices: Vec::new(),
             gathered: Vec::new(),
@@ -272,56 +270,59 @@ impl<'a> Unit<'a> {
         self.done.statistics.rays.shadow += self.asked.len() as u64;
 
         let transparent = self.scene.has_transparent();
-        self.look_for_glass(light);
-        let mut clear = self.clear.iter();
+        if transparent {
+            self.look_for_glass(light);
+        }
+        let mut lit = 0..;
         let about = self.about.iter().zip(&self.answers);
         for (asked, (&(index, illumination), answer)) in about.enumerate() {
             let query = &self.asked[asked];
             let vertex = &vertices[index as usize];
-            let (pixel_index, place) = pixel(vertex.sample);
+            // Not where nobody wants to know: it takes a division.
+            let pixel = || pixel(vertex.sample);
             if shown {
-                let answered = &mut self.done.answered[pixel_index];
+                let answered = &mut self.done.answered[pixel().0];
                 answered.outcomes[answer.outcome as usize] += 1;
                 answered.cost += self.costs[asked];
             }
             if self.settings.mask && vertex.path == Path::EYE {
-                let seen = &mut self.done.seen[pixel_index * self.scene.lights.len() + light];
+                let seen = &mut self.done.seen[pixel().0 * self.scene.lights.len() + light];
                 seen.asked += 1;
                 seen.blocked += u16::from(answer.blocked);
             }
             if self.settings.record {
-                let light = light as u32;
-                let blocked = answer.blocked;
-                let query = *query;
-                self.done.queries.push(RecordedQuery { query, light, pixel: place, blocked });
+                self.done.queries.push(RecordedQuery {
+                    query: *query,
+                    light: light as u32,
+                    pixel: pixel().1,
+                    blocked: answer.blocked,
+                });
             }
             if answer.blocked {
                 continue;
             }
             let mut radiance =
                 vertex.surface.shade(self.scene.material(vertex.triangle), &illumination);
-            if transparent && clear.next() != Some(&Some(false)) {
+            if transparent && let Some(place) = lit.next() {
                 let spawner = self.leaves_out_spawner.then_some(query.spawner);
                 let before = work(&self.attenuation.tally);
+                let Self { scene, backend, .. } = *self;
                 radiance *=
-                    self.attenuation.transmittance(self.scene, self.backend, &query.ray, spawner);
+                    self.attenuation.transmittance(scene, backend, place, &query.ray, spawner);
                 if shown {
-                    self.done.answered[pixel_index].cost += work(&self.attenuation.tally) - before;
+                    self.done.answered[pixel().0].cost += work(&self.attenuation.tally) - before;
                 }
             }
             self.gathered[vertex.sample as usize] += vertex.throughput * radiance;
         }
     }
 
-    /// Finds which queries that are not blocked certainly meet nothing transparent.
+    /// Finds what is transparent before the light, for queries that are not blocked.
     fn look_for_glass(&mut self, light: usize) {
-        let Some(glass) = self.glass else { return };
         let asked = self.asked.iter().zip(&self.answers);
         self.lit.clear();
         self.lit.extend(asked.filter(|(_, answer)| !answer.blocked).map(|(query, _)| *query));
-        self.clear.clear();
-        self.clear.resize(self.lit.len(), None);
-        glass.settle_many(light, &self.lit, &mut self.clear, &mut self.attenuation.tally);
+        self.attenuation.prepare(self.glass, light, &self.lit);
     }
 
     /// Has the queries answered; one by one, noting what each costs, if they are to be shown.

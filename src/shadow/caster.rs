@@ -1,8 +1,8 @@
 //! Verdicts, then memory, then backend: how a query with any of them before the backend is answered.
 
 use super::{
-    Answer, Direct, Inquiry, Memory, Plan, Prepared, Retest, SelfShadow, ShadowQuery, ShadowTally,
-    Shadows, Shelf, Sparing, Verdict, VerdictReport, Verdicts,
+    Answer, Direct, Glass, Inquiry, Memory, Plan, Prepared, Retest, SelfShadow, ShadowQuery,
+    ShadowTally, Shadows, Shelf, Sparing, VerdictReport, Verdicts,
 };
 use crate::occlusion::Occlusion;
 
@@ -56,7 +56,7 @@ impl<M: Memory, K: Shelf<M>> Prepared for Cached<'_, M, K> {
         self.verdicts.memory()
     }
 
-    fn glass(&self) -> Option<&dyn Verdict> {
+    fn glass(&self) -> Option<&dyn Glass> {
         self.verdicts.glass()
     }
 

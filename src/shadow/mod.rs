@@ -60,7 +60,7 @@ pub use shelf::{PerLight, Shelf};
 pub use tally::ShadowTally;
 pub use tolerance::{Nearby, Tolerance};
 pub use trace::Trace;
-pub use transparent::Attenuation;
+pub use transparent::{Attenuation, Glass, Panes};
 pub use verdict::{Settled, Verdict, VerdictReport, Verdicts};
 pub use voxel_cache::LastVoxel;
 pub use woo::{Fronts, LastCell};
@@ -80,9 +80,8 @@ pub trait Prepared: Send + Sync {
         Vec::new()
     }
 
-    /// What proves that queries meet no transparent triangle, and so need not be attenuated; `None` if nothing does
-    /// yet.
-    fn glass(&self) -> Option<&dyn Verdict> {
+    /// What finds the transparent triangles that queries meet; `None` if nothing does yet.
+    fn glass(&self) -> Option<&dyn Glass> {
         None
     }
 

@@ -1,9 +1,7 @@
 //! `trace`: no memory; the backend answers every query that no verdict settles. The measure of the
 //! other methods' answers.
 
-use super::{
-    Answer, Prepared, ShadowQuery, ShadowTally, Shadows, Verdict, VerdictReport, Verdicts,
-};
+use super::{Answer, Glass, Prepared, ShadowQuery, ShadowTally, Shadows, VerdictReport, Verdicts};
 use crate::geometry::Ray;
 use crate::occlusion::Occlusion;
 
@@ -43,7 +41,7 @@ impl Prepared for Trace<'_> {
         self.verdicts.memory()
     }
 
-    fn glass(&self) -> Option<&dyn Verdict> {
+    fn glass(&self) -> Option<&dyn Glass> {
         self.verdicts.glass()
     }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::{ShadowQuery, ShadowTally, VerdictKind};
+use super::{Glass, ShadowQuery, ShadowTally, VerdictKind};
 use crate::occlusion::Tally;
 
 /// Settles some queries outright, from what was prepared for their light; shared by all workers.
@@ -24,9 +24,8 @@ pub trait Verdict: Send + Sync {
         tally: &mut Tally,
     );
 
-    /// What proves that queries meet no *transparent* triangle: `Some(false)` of a query says so. `None` if nothing
-    /// does.
-    fn glass(&self) -> Option<&dyn Verdict> {
+    /// What finds the *transparent* triangles that queries meet, if it does that too.
+    fn glass(&self) -> Option<&dyn Glass> {
         None
     }
 
@@ -55,7 +54,7 @@ impl<V: Verdict> Verdict for Arc<V> {
         V::settle_many(self, light, queries, settled, tally);
     }
 
-    fn glass(&self) -> Option<&dyn Verdict> {
+    fn glass(&self) -> Option<&dyn Glass> {
         V::glass(self)
     }
 
@@ -180,9 +179,9 @@ impl<'a> Verdicts<'a> {
         before
     }
 
-    /// What proves that queries meet no transparent triangle, if one of them does.
+    /// What finds the transparent triangles that queries meet, if one of them does.
     #[must_use]
-    pub fn glass(&self) -> Option<&dyn Verdict> {
+    pub fn glass(&self) -> Option<&dyn Glass> {
         self.0.iter().find_map(|stacked| stacked.verdict.glass())
     }
 

@@ -16,6 +16,8 @@ mod node;
 #[cfg(test)]
 mod tests;
 
+use std::ops::ControlFlow;
+
 pub(crate) use node::{Child, Node};
 
 use super::eight::{Eight, WIDTH};
@@ -52,14 +54,15 @@ impl Cluster {
         lane > 0 && self.ids[lane] == self.ids[lane - 1]
     }
 
-    /// A triangle that the ray meets.
+    /// Calls `hit` for triangles that the ray meets, those that are repeated more than once, until it breaks.
     #[inline(always)]
-    pub(crate) fn meets<T: TriangleTest, L: Lanes>(
+    pub(crate) fn test_each<T: TriangleTest, L: Lanes>(
         &self,
         ray: &Ray,
         lanes: &RayLanes<L>,
         triangles: &Triangles,
-    ) -> Option<TriangleId> {
+        mut hit: impl FnMut(TriangleId) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let mut first = 0;
         while first < WIDTH {
             let claims = T::claims::<L>(lanes, &self.corners.load(first));
@@ -70,12 +73,12 @@ impl Cluster {
                 let id = self.ids[first + lane as usize];
                 let certain = claims.certain & (1 << lane) != 0;
                 if certain || T::settle(ray, &triangles.get(id), triangles.slack()) {
-                    return Some(id);
+                    hit(id)?;
                 }
             }
             first += L::COUNT;
         }
-        None
+        ControlFlow::Continue(())
     }
 }
 

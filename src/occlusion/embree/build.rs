@@ -1,13 +1,17 @@
 //! From triangles and options to a scene in Embree.
 
 use std::collections::HashMap;
+use std::num::NonZeroU32;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use embree_ffi::{BuildQuality, Device, DeviceConfig, Mesh, SceneBuilder, SceneOptions};
+use glam::Vec3;
 
 use super::{Embree, OPAQUE, TRANSPARENT};
 use crate::geometry::lanes::Arithmetic;
 use crate::geometry::{TriangleId, Triangles};
+use crate::occlusion::transparent::is_transparent_apart;
 
 pub use embree_ffi::Isa;
 
@@ -81,26 +85,35 @@ impl Embree {
             Quality::Medium => BuildQuality::Medium,
             Quality::High => BuildQuality::High,
         };
-        let mut builder =
-            SceneBuilder::new(&device, SceneOptions::default().quality(quality).robust(robust))?;
-        let mut firsts = Vec::new();
-        let mut copied = 0;
+        let scene_options = SceneOptions::default().quality(quality).robust(robust);
         let opaque = triangles.opaque_count();
-        for (range, mask) in [(0..opaque, OPAQUE), (opaque..triangles.len() as u32, TRANSPARENT)] {
-            if range.is_empty() {
-                continue;
+        let kinds = [(0..opaque, OPAQUE), (opaque..triangles.len() as u32, TRANSPARENT)];
+        let meshes: Vec<SharedVertices> = kinds
+            .into_iter()
+            .filter(|(range, _)| !range.is_empty())
+            .map(|(range, mask)| SharedVertices::new(&triangles, range, mask))
+            .collect();
+        let mut copied = 0;
+        let mut commit = |meshes: &[SharedVertices]| {
+            let mut builder = SceneBuilder::new(&device, scene_options)?;
+            for mesh in meshes {
+                builder.add(mesh.mesh())?;
+                copied += mesh.bytes();
             }
-            firsts.push(range.start);
-            let (vertices, indices) = shared_vertices(&triangles, range);
-            copied += size_of_val(&*vertices) + size_of_val(&*indices);
-            builder.add(Mesh::new(&vertices, &indices).with_mask(mask))?;
-        }
-        let scene = builder.commit()?;
+            builder.commit()
+        };
+        let scene = commit(&meshes)?;
         check_width(&scene, options.width)?;
+        let transparent = if is_transparent_apart(&triangles) {
+            Some(Arc::new(commit(&meshes[1..])?))
+        } else {
+            None
+        };
+        let firsts = meshes.iter().map(|mesh| mesh.first).collect();
         // What Embree reports includes the copies of vertices and indices; its structure is the rest.
         let bytes = device.memory_used().saturating_sub(copied);
         let (scene, companion) = (Arc::new(scene), Arc::new(OnceLock::new()));
-        Ok(Self { triangles, scene, firsts, options, robust, bytes, companion })
+        Ok(Self { triangles, scene, transparent, firsts, options, robust, bytes, companion })
     }
 }
 
@@ -118,22 +131,34 @@ pub(super) fn check_width(
     }
 }
 
-/// Joins equal corners: Embree's own triangles refer to vertices.
-fn shared_vertices(
-    triangles: &Triangles,
-    range: std::ops::Range<TriangleId>,
-) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
-    let mut vertices = Vec::new();
-    let mut known: HashMap<[u32; 3], u32> = HashMap::new();
-    let indices = range
-        .map(|id| {
-            triangles.get(id).map(|corner| {
-                *known.entry(corner.to_array().map(f32::to_bits)).or_insert_with(|| {
-                    vertices.push(corner.to_array());
-                    vertices.len() as u32 - 1
-                })
+/// Triangles whose equal corners are joined: Embree's own refer to vertices.
+struct SharedVertices {
+    first: TriangleId,
+    mask: NonZeroU32,
+    vertices: Vec<[f32; 3]>,
+    indices: Vec<[u32; 3]>,
+}
+
+impl SharedVertices {
+    fn new(triangles: &Triangles, range: Range<TriangleId>, mask: NonZeroU32) -> Self {
+        let first = range.start;
+        let mut vertices = Vec::new();
+        let mut known: HashMap<[u32; 3], u32> = HashMap::new();
+        let mut index = |corner: Vec3| {
+            *known.entry(corner.to_array().map(f32::to_bits)).or_insert_with(|| {
+                vertices.push(corner.to_array());
+                vertices.len() as u32 - 1
             })
-        })
-        .collect();
-    (vertices, indices)
+        };
+        let indices = range.map(|id| triangles.get(id).map(&mut index)).collect();
+        Self { first, mask, vertices, indices }
+    }
+
+    fn mesh(&self) -> Mesh<'_> {
+        Mesh::new(&self.vertices, &self.indices).with_mask(self.mask)
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(&*self.vertices) + size_of_val(&*self.indices)
+    }
 }

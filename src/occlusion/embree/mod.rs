@@ -7,7 +7,8 @@
 //! in front of Embree tests is the lower bound of Embree's own answer (`geometry::intersect::embree`), so
 //! that it never says "blocked" where Embree would not.
 //!
-//! Each opaque and transparent triangle lies in a geometry of its own kind with a mask of its own.
+//! Each opaque and transparent triangle lies in a geometry of its own kind with a mask of its own; the transparent ones, where they are the
+//! lesser part, in a second scene too, as a ray masked for them comes to all that is opaque on its way.
 
 mod build;
 mod packets;
@@ -33,6 +34,8 @@ const TRANSPARENT: NonZeroU32 = NonZeroU32::new(2).unwrap();
 pub struct Embree {
     triangles: Arc<Triangles>,
     scene: Arc<Scene>,
+    /// The transparent triangles alone, where they are the lesser part: through the scene, rays would come to all that is opaque.
+    transparent: Option<Arc<Scene>>,
     /// First triangle of each geometry.
     firsts: Vec<TriangleId>,
     options: EmbreeOptions,
@@ -60,9 +63,10 @@ impl Embree {
     ) -> Result<Self, embree_ffi::Error> {
         build::check_width(&self.scene, width)?;
         let (triangles, scene) = (self.triangles.clone(), self.scene.clone());
-        let (firsts, companion) = (self.firsts.clone(), self.companion.clone());
-        let options = EmbreeOptions { width, coherent, ..self.options };
-        Ok(Self { triangles, scene, firsts, options, companion, ..*self })
+        let (transparent, firsts) = (self.transparent.clone(), self.firsts.clone());
+        let (options, companion) =
+            (EmbreeOptions { width, coherent, ..self.options }, self.companion.clone());
+        Ok(Self { triangles, scene, transparent, firsts, options, companion, ..*self })
     }
 
     fn ray(ray: &Ray, mask: NonZeroU32) -> EmbreeRay {
@@ -160,10 +164,17 @@ impl Occlusion for Embree {
         {
             return;
         }
-        self.scene.occluded_with(&Self::ray(ray, TRANSPARENT), |hit| {
-            found.push(self.triangle(hit));
-            Verdict::Reject
-        });
+        let ray = Self::ray(ray, TRANSPARENT);
+        match &self.transparent {
+            Some(scene) => scene.occluded_with(&ray, |hit| {
+                found.push(self.triangles.opaque_count() + hit.primitive);
+                Verdict::Reject
+            }),
+            None => self.scene.occluded_with(&ray, |hit| {
+                found.push(self.triangle(hit));
+                Verdict::Reject
+            }),
+        };
         found.sort_unstable();
         found.dedup();
     }

@@ -29,8 +29,7 @@ use worker::Worker;
 use super::plan::prepare_from;
 use super::stock::Stock;
 use super::{
-    MethodError, Plan, Prepared, SelfShadow, ShadowQuery, Shadows, Verdict, VerdictReport,
-    VerdictSet,
+    Glass, MethodError, Plan, Prepared, SelfShadow, ShadowQuery, Shadows, VerdictReport, VerdictSet,
 };
 use crate::geometry::Bounds;
 use crate::occlusion::{Occlusion, Test};
@@ -208,7 +207,7 @@ impl Prepared for Auto<'_> {
         reports
     }
 
-    fn glass(&self) -> Option<&dyn Verdict> {
+    fn glass(&self) -> Option<&dyn Glass> {
         let prepared = self.candidates.iter().filter_map(|candidate| candidate.prepared.get());
         prepared.filter_map(|prepared| prepared.glass()).next()
     }

@@ -104,8 +104,9 @@ impl Worker<'_, '_> {
                 },
             );
             lease.timed += count;
-            lease.nanoseconds += nanoseconds;
-            lease.building += building;
+            // A clock may leap.
+            lease.nanoseconds = lease.nanoseconds.saturating_add(nanoseconds);
+            lease.building = lease.building.saturating_add(building);
         } else {
             shadows.answer(light, queries, answers);
         }

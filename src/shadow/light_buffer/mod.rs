@@ -21,6 +21,7 @@ mod footprint;
 mod map;
 mod view;
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -161,7 +162,8 @@ impl LightBuffer {
             };
             tally.triangle_tests += WIDTH as u64;
             let cluster = &all[cluster as usize];
-            blocked = cluster.meets::<Exact, L>(ray, &lanes, &self.triangles).is_some();
+            let stop = |_| ControlFlow::Break(());
+            blocked = cluster.test_each::<Exact, L>(ray, &lanes, &self.triangles, stop).is_break();
         }
         Some(blocked)
     }

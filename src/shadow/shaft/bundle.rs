@@ -8,8 +8,8 @@ use super::planes::Ground;
 use super::source::Source;
 use super::view::{Perspective, View};
 use crate::geometry::lanes::{Lanes, Sixteen};
-use crate::geometry::{Ray, Triangles};
-use crate::shadow::ShadowQuery;
+use crate::geometry::{Ray, TriangleId, Triangles};
+use crate::shadow::{Panes, ShadowQuery};
 
 /// A bundle whose packets are on average larger than this part of it is not kept together by halving it.
 const SPREAD_WHOLE: f32 = 0.4;
@@ -127,6 +127,10 @@ pub(super) struct Bundle {
     pub open: [u16; PACKETS],
     /// A bit a packet that has such.
     open_packets: u16,
+    /// Whether all that queries meet is wanted; then none is ever closed.
+    pub wants_all: bool,
+    /// What they meet then: queries, and the triangle.
+    met: Vec<(u16, TriangleId)>,
     /// Largest coordinate of origins and light or, towards a direction, of all that is there, and of the centre: in magnitude.
     pub largest: f32,
 }
@@ -145,6 +149,8 @@ impl Bundle {
             asked: [0; PACKETS],
             open: [0; PACKETS],
             open_packets: 0,
+            wants_all: false,
+            met: Vec::new(),
             largest: 0.0,
         }
     }
@@ -159,6 +165,7 @@ impl Bundle {
         triangles: &Triangles,
     ) -> Option<Ground> {
         let packets = queries.count().div_ceil(PACKET);
+        self.met.clear();
         self.asked = [0; PACKETS];
         self.boxes = [OriginBox::EMPTY; 2 * PACKETS];
         let columns = queries.columns;
@@ -304,12 +311,42 @@ impl Bundle {
         self.open_packets & PACKETS_OF[part] != 0
     }
 
-    /// Notes that queries of a packet are blocked.
+    /// Notes that a triangle blocks queries of a packet.
     #[inline(always)]
-    pub fn block(&mut self, packet: usize, blocked: u16) {
+    pub fn block(&mut self, packet: usize, blocked: u16, triangle: TriangleId) {
+        if self.wants_all {
+            return self.note(packet, blocked & self.open[packet], triangle);
+        }
         self.open[packet] &= !blocked;
         if self.open[packet] == 0 {
             self.open_packets &= !(1 << packet);
+        }
+    }
+
+    /// Keeps it in mind that queries of a packet meet a triangle.
+    #[inline(never)]
+    fn note(&mut self, packet: usize, mut blocked: u16, triangle: TriangleId) {
+        while blocked != 0 {
+            let query = packet as u16 * PACKET as u16 + blocked.trailing_zeros() as u16;
+            blocked &= blocked - 1;
+            self.met.push((query, triangle));
+        }
+    }
+
+    /// Notes all that queries meet, at their places.
+    pub fn tell_all(&self, places: Places<'_>, panes: &mut Panes) {
+        let place = |query: usize| match places {
+            Places::Row { first, .. } => first + query,
+            Places::These(places) => places[query] as usize,
+        };
+        for (packet, &(mut asked)) in self.asked.iter().enumerate() {
+            while asked != 0 {
+                panes.answer(place(packet * PACKET + asked.trailing_zeros() as usize));
+                asked &= asked - 1;
+            }
+        }
+        for &(query, triangle) in &self.met {
+            panes.add(place(query.into()), triangle);
         }
     }
 

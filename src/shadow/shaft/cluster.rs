@@ -53,22 +53,26 @@ impl Tests<'_, '_> {
         tally.triangle_tests += WIDTH as u64 * u64::from(rays.count_ones());
         let cluster = &around.clusters.all()[number as usize];
         let planes = kept.of::<L>(ground, number, cluster);
-        let mut blocked = 0;
         while rays != 0 {
             let lane = rays.trailing_zeros() as usize;
             rays &= rays - 1;
             let [x, y, z] = &bundle.origins[packet];
             let origin = Vec3::new(x.0[lane], y.0[lane], z.0[lane]);
-            let (certain, mut doubtful) = planes.cast_on_one::<L>(origin);
-            let mut is_blocked = certain != 0;
-            while !is_blocked && doubtful != 0 {
-                let triangle = cluster.ids()[doubtful.trailing_zeros() as usize];
-                doubtful &= doubtful - 1;
-                is_blocked = settle(packet * PACKET + lane, triangle, around);
+            let (certain, doubtful) = planes.cast_on_one::<L>(origin);
+            // Certain ones first: any will do, unless all are wanted.
+            'triangles: for (mut triangles, is_certain) in [(certain, true), (doubtful, false)] {
+                while triangles != 0 {
+                    let triangle = cluster.ids()[triangles.trailing_zeros() as usize];
+                    triangles &= triangles - 1;
+                    if is_certain || settle(packet * PACKET + lane, triangle, around) {
+                        bundle.block(packet, 1 << lane, triangle);
+                        if !bundle.wants_all {
+                            break 'triangles;
+                        }
+                    }
+                }
             }
-            blocked |= u16::from(is_blocked) << lane;
         }
-        bundle.block(packet, blocked);
     }
 }
 
@@ -133,7 +137,7 @@ fn cast<S: Sixteen>(
         let packet = touched.trailing_zeros() as usize;
         touched &= touched - 1;
         if covered & (1 << packet) != 0 {
-            bundle.block(packet, u16::MAX);
+            bundle.block(packet, u16::MAX, shadow.triangle);
         } else {
             cast_on(bundle, packet, u16::MAX, shadow, around, tally);
         }
@@ -163,7 +167,7 @@ fn cast_on<S: Sixteen>(
             blocked |= 1 << query;
         }
     }
-    bundle.block(packet, blocked);
+    bundle.block(packet, blocked, shadow.triangle);
 }
 
 /// Decides one triangle for one query.

@@ -40,7 +40,7 @@ use source::Source;
 use walk::{Around, Walker};
 
 use super::stock::Stock;
-use super::{ShadowQuery, Verdict, VerdictKind};
+use super::{Glass, Panes, ShadowQuery, Verdict, VerdictKind};
 use crate::geometry::Triangles;
 use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally};
@@ -109,9 +109,10 @@ impl Shafts {
         clusters: &Clusters,
         light: usize,
         queries: &[ShadowQuery],
-        settled: &mut [Option<bool>],
+        mut told: Told<'_>,
         tally: &mut Tally,
     ) {
+        walker.bundle.wants_all = matches!(told, Told::Met(_));
         let source = &self.sources[light];
         let mut columns = std::mem::take(&mut walker.columns);
         let mut order = std::mem::take(&mut walker.order);
@@ -120,7 +121,10 @@ impl Shafts {
             let queries = Chosen::new(queries, &columns, places);
             let around = Around { clusters, triangles: &self.triangles, queries, leaves_spread };
             if self.arithmetic.run(Walk { walker, source, around, tally }) {
-                walker.bundle.tell(places, settled);
+                match &mut told {
+                    Told::Blocked(settled) => walker.bundle.tell(places, settled),
+                    Told::Met(panes) => walker.bundle.tell_all(places, panes),
+                }
             }
         };
         let size = columns.extent_if_sorted().max(APART * clusters.typical_extent());
@@ -145,10 +149,32 @@ impl Shafts {
         (walker.columns, walker.order) = (columns, order);
     }
 
+    fn settle_by_a_walker(
+        &self,
+        light: usize,
+        queries: &[ShadowQuery],
+        told: Told<'_>,
+        tally: &mut Tally,
+    ) {
+        let Some(clusters) = &self.clusters else { return };
+        let mut walker = self.walker();
+        walker.begin();
+        self.settle_with(&mut walker, clusters, light, queries, told, tally);
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(walker);
+    }
+
     fn walker(&self) -> Box<Walker> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         idle.pop().unwrap_or_else(|| Box::new(Walker::new()))
     }
+}
+
+/// What is told of queries.
+enum Told<'a> {
+    /// Whether they are blocked.
+    Blocked(&'a mut [Option<bool>]),
+    /// All that they meet.
+    Met(&'a mut Panes),
 }
 
 impl Verdict for Shafts {
@@ -159,15 +185,11 @@ impl Verdict for Shafts {
         settled: &mut [Option<bool>],
         tally: &mut Tally,
     ) {
-        let Some(clusters) = &self.clusters else { return };
-        let mut walker = self.walker();
-        walker.begin();
-        self.settle_with(&mut walker, clusters, light, queries, settled, tally);
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(walker);
+        self.settle_by_a_walker(light, queries, Told::Blocked(settled), tally);
     }
 
-    fn glass(&self) -> Option<&dyn Verdict> {
-        self.glass.as_deref().map(|glass| glass as &dyn Verdict)
+    fn glass(&self) -> Option<&dyn Glass> {
+        self.glass.as_deref().map(|glass| glass as &dyn Glass)
     }
 
     fn memory(&self) -> usize {
@@ -176,6 +198,12 @@ impl Verdict for Shafts {
 
     fn notes(&self) -> Vec<String> {
         self.aside.iter().cloned().collect()
+    }
+}
+
+impl Glass for Shafts {
+    fn find(&self, light: usize, queries: &[ShadowQuery], panes: &mut Panes, tally: &mut Tally) {
+        self.settle_by_a_walker(light, queries, Told::Met(panes), tally);
     }
 }
 

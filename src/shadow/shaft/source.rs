@@ -12,13 +12,20 @@ pub(super) enum Source {
     Direction(Vec3),
 }
 
+/// Lengths of directions that count as one: error bounds are for those. To others no ray is known to go, so all are passed on.
+const UNIT: std::ops::Range<f32> = 0.5..2.0;
+
 impl Source {
     pub fn new(light: &Light) -> Self {
         match light {
             Light::Point { position, .. } | Light::Spot { position, .. } => {
                 Self::Point(position.as_vec3())
             }
-            Light::Directional { direction, .. } => Self::Direction(direction.as_vec3()),
+            Light::Directional { direction, .. } => {
+                let direction = direction.as_vec3();
+                let is_unit = UNIT.contains(&direction.length());
+                Self::Direction(if is_unit { direction } else { Vec3::NAN })
+            }
         }
     }
 

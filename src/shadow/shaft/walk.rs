@@ -5,6 +5,8 @@
 //! apart, and its rays go on one by one. So rays that stay together share every step, and those that do not cost
 //! what they cost alone.
 
+use std::ops::ControlFlow::{Break, Continue};
+
 use super::bundle::{Bundle, Chosen, PACKET, PACKETS};
 use super::cluster::Tests;
 use super::columns::Columns;
@@ -253,8 +255,12 @@ impl Walker {
                     clusters &= clusters - 1;
                     tally.triangle_tests += WIDTH as u64;
                     let cluster = &around.clusters.all()[node.number(slot) as usize];
-                    if cluster.meets::<Exact, L>(ray, &lanes, around.triangles).is_some() {
-                        self.bundle.block(packet, 1 << lane);
+                    let hit = |triangle| {
+                        self.bundle.block(packet, 1 << lane, triangle);
+                        if self.bundle.wants_all { Continue(()) } else { Break(()) }
+                    };
+                    let tests = cluster.test_each::<Exact, L>(ray, &lanes, around.triangles, hit);
+                    if tests.is_break() {
                         break 'ray;
                     }
                 }

@@ -3,13 +3,13 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::geometry::{TriangleId, Triangles};
+use crate::geometry::{TriangleId, Triangles, is_finite};
 
 /// No triangle has this id.
 const NOBODY: TriangleId = TriangleId::MAX;
 
 /// For each edge of each opaque triangle, the one other triangle that has an edge between the same two
-/// points, if it is one.
+/// points, if it is one. Those that are not finite, which block nothing, are nobody's neighbours.
 pub(crate) struct Neighbours(Vec<[TriangleId; 3]>);
 
 /// An edge of a triangle: from its corner of this number (0 to 2) to the next.
@@ -35,6 +35,7 @@ impl Neighbours {
     pub fn new(triangles: &Triangles) -> Self {
         let mut edges: Vec<([Point; 2], TriangleId, u8)> = (0..triangles.opaque_count())
             .into_par_iter()
+            .filter(|&id| is_finite(&triangles.get(id)))
             .flat_map_iter(|id| {
                 let corners = triangles.get(id).map(point);
                 (0..3).map(move |number| {

@@ -21,7 +21,7 @@ use super::sort::{Extent, Lattice};
 use super::walk::MOST_DEPTH;
 use super::{Cube, MOST, NestedGrid, Node, SLOTS, Threads};
 use crate::geometry::lanes::Arithmetic;
-use crate::geometry::{TriangleId, Triangles, is_finite};
+use crate::geometry::{Bounds, TriangleId, Triangles, is_finite};
 use crate::occlusion::Eight;
 use crate::occlusion::eight::WIDTH;
 
@@ -52,8 +52,16 @@ const CUT_FROM: usize = MOST_DEPTH - 8;
 /// Sorts all triangles.
 pub(super) fn build(triangles: &Triangles) -> NestedGrid {
     let all: Vec<TriangleId> = (0..triangles.len() as TriangleId).collect();
-    let cube = Cube::over(triangles);
+    let cube = Cube::over(triangles.bounds(), triangles.slack());
     Sorter::new(triangles, cube, &all, Extent::ALL, Threads::Many).build()
+}
+
+/// Sorts some of the triangles, in a cube that is as large as they are.
+pub(super) fn build_among(triangles: &Triangles, ids: Range<TriangleId>) -> NestedGrid {
+    let list: Vec<TriangleId> = ids.filter(|&id| is_finite(&triangles.get(id))).collect();
+    let bounds = list.iter().map(|&id| triangles.bounds_of(id)).reduce(Bounds::union);
+    let cube = Cube::over(bounds, triangles.slack());
+    Sorter::new(triangles, cube, &list, Extent::ALL, Threads::Many).build()
 }
 
 /// Sorts some of the triangles, and only where they are in a box of the scene.
@@ -64,7 +72,7 @@ pub(super) fn divide(
     high: DVec3,
     threads: Threads,
 ) -> Option<NestedGrid> {
-    let cube = Cube::over(triangles);
+    let cube = Cube::over(triangles.bounds(), triangles.slack());
     let place = |corner| cube.place(corner).as_vec3a();
     let around = Extent { low: place(low) - cube.padding, high: place(high) + cube.padding };
     let sorter = || Sorter::new(triangles, cube, list, around, threads);

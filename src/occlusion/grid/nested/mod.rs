@@ -43,7 +43,7 @@ use glam::{DVec3, UVec3, Vec3A};
 use group::{GROUP, Group};
 
 use crate::geometry::lanes::Lanes;
-use crate::geometry::{Ray, TriangleId, Triangles};
+use crate::geometry::{Bounds, Ray, TriangleId, Triangles};
 use crate::occlusion::clip::{Clip, clip};
 use crate::occlusion::{Cell, Eight, Visit, VisitMany, Walk};
 
@@ -92,11 +92,11 @@ struct Cube {
 }
 
 impl Cube {
-    /// The cube over all of the triangles.
-    fn over(triangles: &Triangles) -> Self {
+    /// The cube over what is in a box; what a test may err by is that of the whole scene.
+    fn over(bounds: Option<Bounds>, slack: f64) -> Self {
         /// A scene that is one point has some side too.
         const LEAST: f64 = 1e-60;
-        let (bounds, slack) = (triangles.bounds().unwrap_or_default(), triangles.slack());
+        let bounds = bounds.unwrap_or_default();
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let side = (max - min).max_element().max(slack).max(LEAST);
         let scale = side.recip();
@@ -147,6 +147,11 @@ impl NestedGrid {
     #[must_use]
     pub fn new(triangles: &Triangles) -> Self {
         build::build(triangles)
+    }
+
+    /// The same for some of the triangles, wherever they are.
+    pub(in crate::occlusion) fn among(triangles: &Triangles, ids: Range<TriangleId>) -> Self {
+        build::build_among(triangles, ids)
     }
 
     /// The same for some of the triangles, by one thread or many, and only where they are in a box; `None` if that
