@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::{
-    Brute, Bvh2, Cwbvh, DividedGrid, Engine, Grid, GridOptions, NestedGrid, Occlusion, TooFine,
+    Brute, Bvh2, Cwbvh, DividedGrid, Engine, Grid, GridError, GridOptions, NestedGrid, Occlusion,
     Walk,
 };
 use crate::exact::Exact;
@@ -117,7 +117,7 @@ pub enum BackendError {
     Embree(#[from] embree_ffi::Error),
     /// The grid cannot be as fine as was asked for.
     #[error(transparent)]
-    TooFine(#[from] TooFine),
+    Grid(#[from] GridError),
     /// Embree decides by its own arithmetic.
     #[error(
         "embree has no test '{0}': its own are pluecker (robust mode) and moller (default mode)"
@@ -159,6 +159,7 @@ fn grid(
     })
 }
 
+#[cfg(feature = "embree")]
 fn embree(
     test: Test,
     triangles: &Arc<Triangles>,
@@ -169,13 +170,16 @@ fn embree(
         Test::Moller => false,
         other => return Err(BackendError::NotInEmbree(other)),
     };
-    #[cfg(feature = "embree")]
-    return Ok(Box::new(super::Embree::new(triangles.clone(), robust, options.embree)?));
-    #[cfg(not(feature = "embree"))]
-    {
-        let _ = (robust, triangles, options);
-        Err(BackendError::WithoutEmbree)
-    }
+    Ok(Box::new(super::Embree::new(triangles.clone(), robust, options.embree)?))
+}
+
+#[cfg(not(feature = "embree"))]
+fn embree(
+    _: Test,
+    _: &Arc<Triangles>,
+    _: &BuildOptions,
+) -> Result<Box<dyn Occlusion>, BackendError> {
+    Err(BackendError::WithoutEmbree)
 }
 
 fn engine<W: Walk>(

@@ -13,6 +13,7 @@ mod clip;
 mod clusters;
 mod culling_space;
 mod cwbvh;
+mod debug;
 mod eight;
 #[cfg(feature = "embree")]
 mod embree;
@@ -39,7 +40,7 @@ pub use eight::{Eight, WIDTH};
 #[cfg(feature = "embree")]
 pub use embree::{Embree, EmbreeOptions, Isa, PacketWidth, Quality};
 pub use engine::Engine;
-pub use grid::{DividedGrid, Grid, GridOptions, NestedGrid, TooFine};
+pub use grid::{DividedGrid, Grid, GridError, GridOptions, NestedGrid, TooFine};
 pub(crate) use grid::{Level, Steps};
 pub use kind::{Backend, BackendError, BuildOptions, Test, build};
 pub use left_out::LeftOut;
