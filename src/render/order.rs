@@ -36,6 +36,9 @@ impl Order {
     }
 
     /// The pixels of each unit before dear ones are cut, in the order in which they are rendered; `samples` of them along a pixel's side.
+    ///
+    /// # Panics
+    /// If a unit of a scanline order has no rows.
     #[must_use]
     pub fn units(
         self,

@@ -1,6 +1,7 @@
 //! What a user of the library may hand over by mistake is refused in one clear line, and never renders nonsense.
 
 mod engines;
+mod pictures;
 mod scenes;
 
 use umbra::glam::{DVec3, Vec3};
