@@ -68,6 +68,23 @@ pub struct Progress {
 
 /// Renders a scene.
 ///
+/// ```
+/// use umbra::occlusion::{Backend, BuildOptions, Test, build};
+/// use umbra::render::{Picture, Progress, Settings, encode_picture, render};
+/// use umbra::scene::builtin;
+/// use umbra::shadow::{Method, prepare};
+///
+/// let scene = builtin::draft_at("drum", 0.01)?.finish()?;
+/// let backend = build(Backend::Grid, Test::Exact, &scene.triangles, &BuildOptions::default())?;
+/// let shadows = prepare(Method::ObjectCache, &scene, &*backend)?;
+/// let settings = Settings { width: 16, height: 12, ..Settings::default() };
+/// let film = render(&scene, &*backend, &*shadows, &settings, &Progress::default())?.film;
+///
+/// let png = encode_picture(&film, film.automatic_exposure(), Picture::Png8);
+/// assert!(png.starts_with(b"\x89PNG"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Runs in the current rayon pool; to choose the number of threads, install one. The backend is one over the scene's
 /// triangles, and `shadows` were [prepared](crate::shadow::prepare) for that scene and backend.
 ///

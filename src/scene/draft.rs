@@ -52,7 +52,27 @@ impl fmt::Display for Dropped {
     }
 }
 
-/// A scene in the making.
+/// A scene in the making: how triangles that are in no file become a [`Scene`].
+///
+/// ```
+/// use umbra::glam::{DVec3, Vec3};
+/// use umbra::scene::{Draft, DraftTriangle, Light};
+///
+/// let corners = [DVec3::ZERO, DVec3::X, DVec3::Z];
+/// let floor = DraftTriangle { corners, normals: [Vec3::ZERO; 3], material: 0 };
+/// let lamp = Light::Point { position: 2.0 * DVec3::Y, intensity: Vec3::ONE };
+/// let draft = Draft {
+///     name: "floor".to_owned(),
+///     triangles: vec![floor],
+///     lights: vec![lamp],
+///     ..Draft::default()
+/// };
+/// let scene = draft.finish()?;
+/// assert_eq!((scene.triangles.len(), scene.lights.len()), (1, 1));
+/// // There was no camera, so one was added.
+/// assert!(scene.notes[0].starts_with("no usable camera"));
+/// # Ok::<(), umbra::scene::SceneError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Draft {
     /// Name for messages.

@@ -114,6 +114,26 @@ pub enum MethodError {
 /// Makes a method ready for a scene and a backend over its triangles, and over no others: that is not checked, and
 /// before a backend over another scene answers are about neither, or asking panics.
 ///
+/// ```
+/// # use umbra::glam::Vec3;
+/// # use umbra::occlusion::{Backend, BuildOptions, Test, build};
+/// # use umbra::scene::builtin;
+/// use umbra::shadow::{Answer, Combination, Path, ShadowQuery, prepare};
+///
+/// # let scene = builtin::draft_at("chair-room", 0.01)?.finish()?;
+/// # let backend = build(Backend::Grid, Test::Exact, &scene.triangles, &BuildOptions::default())?;
+/// let method: Combination = "shaft+object-cache".parse()?;
+/// let prepared = prepare(method, &scene, &*backend)?;
+///
+/// // From the middle of the scene to its first light.
+/// let ray = scene.lights[0].shadow_ray(scene.bounds().centre().as_vec3());
+/// let queries = [ShadowQuery { ray, path: Path::EYE, spawner: 0 }];
+/// let mut answers = [Answer::default()];
+/// prepared.worker().answer(0, &queries, &mut answers);
+/// println!("{}", if answers[0].blocked { "dark" } else { "lit" });
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// What it costs depends on the verdicts: none takes nothing, `light-buffer` prepares a light when it is first asked
 /// about, the others prepare here. Each worker answers by itself; share the method among threads, and give each a worker.
 ///

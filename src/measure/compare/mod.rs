@@ -104,6 +104,27 @@ pub enum CompareError {
 
 /// Has all contenders answer the queries of a recording; `answered` counts queries, for whoever shows progress.
 ///
+/// ```
+/// use std::sync::atomic::AtomicU64;
+/// use umbra::measure::{compare::compare, contender::Choice, recording::Recording};
+/// use umbra::occlusion::{Backend, Test};
+/// use umbra::render::{Progress, Settings};
+/// use umbra::scene::builtin;
+///
+/// let scene = builtin::draft_at("drum", 0.01)?.finish()?;
+/// let settings = Settings { width: 8, height: 6, ..Settings::default() };
+/// let recording = Recording::of(&scene, &settings, &Progress::default())?;
+/// let choice = Choice {
+///     backends: vec![Backend::Grid, Backend::Bvh2],
+///     tests: vec![Test::Exact],
+///     ..Choice::default()
+/// };
+/// let contenders = choice.select().contenders;
+/// let report = compare(&scene, &recording, &contenders, &AtomicU64::new(0))?;
+/// assert!(report.disagreements.is_empty() && report.failure().is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Engines are built one after the other and dropped, so memory holds the scene, one engine, one culler, and the
 /// queries with their verdicts.
 ///
