@@ -1,6 +1,7 @@
 //! What a user of the library may hand over by mistake is refused in one clear line, and never renders nonsense.
 
 mod engines;
+mod names;
 mod pictures;
 mod scenes;
 
