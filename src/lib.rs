@@ -4,6 +4,8 @@
 //! One direction of dependence, ground floor first: [`geometry`], [`exact`], [`scene`], [`occlusion`],
 //! [`shadow`], [`render`], [`measure`], [`cli`]; beside them [`whole_file`].
 
+pub use glam;
+
 pub mod cli;
 pub mod exact;
 pub mod geometry;

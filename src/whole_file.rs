@@ -1,5 +1,6 @@
 //! Files that are written whole or not at all.
 
+use std::fmt;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -38,7 +39,14 @@ pub struct Unwritable {
     /// The file.
     pub path: PathBuf,
     /// What the system said.
+    #[source]
     pub reason: io::Error,
+}
+
+impl fmt::Debug for WholeFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("WholeFile").field("path", &self.path).finish_non_exhaustive()
+    }
 }
 
 impl WholeFile {
@@ -55,7 +63,10 @@ impl WholeFile {
         let (file, temporary) = match nameless::create(folder_of(&place)) {
             Some(file) => (file, None),
             None => {
-                let (file, temporary) = temporary().tempfile_in(folder_of(&place))?.into_parts();
+                // An ordinary file: who may read it, the umask decides. What the system says is given as it is, without
+                // the temporary name.
+                let made = temporary().make_in(folder_of(&place), |name| File::create_new(name))?;
+                let (file, temporary) = made.into_parts();
                 (file, Some(temporary))
             }
         };
@@ -164,9 +175,6 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 fn temporary() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".umbra-");
-    // Temporary files are private by default; this one becomes an ordinary file, so the umask decides.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder
 }
 

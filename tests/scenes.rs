@@ -35,9 +35,10 @@ fn transparent_count(scene: &Scene) -> usize {
 /// World coordinates within a hundredth of what the README lists, which has three decimals.
 fn assert_box(scene: &Scene, min: [f64; 3], max: [f64; 3]) {
     let bounds = scene.bounds();
-    let world = |corner: Vec3| corner.as_dvec3() + scene.origin;
-    assert!((world(bounds.min) - DVec3::from(min)).abs().max_element() < 0.01, "{bounds:?}");
-    assert!((world(bounds.max) - DVec3::from(max)).abs().max_element() < 0.01, "{bounds:?}");
+    for (corner, listed) in [(bounds.min, min), (bounds.max, max)] {
+        let distance = (scene.to_world(corner) - DVec3::from(listed)).abs().max_element();
+        assert!(distance < 0.01, "{bounds:?}");
+    }
 }
 
 #[test]
@@ -137,7 +138,7 @@ fn delft_is_moved_before_it_is_rounded() {
     // The first face's vertices keep the millimetres of the file.
     let millimetre = |x: f64| (x * 1e3 - (x * 1e3).round()).abs();
     let [corner, ..] = scene.triangles.get(0);
-    let world = corner.as_dvec3() + scene.origin;
+    let world = scene.to_world(corner);
     assert!(millimetre(world.x) < 0.02 && millimetre(world.y) < 0.02, "{world}");
 }
 

@@ -6,6 +6,8 @@
 //! ray meets it, that point, and on which side of each edge it lies. The faster stages use other
 //! polynomials (edge against ray instead of point against edge) and share no code with this file.
 
+use std::fmt;
+
 use num_bigint::BigInt;
 
 use crate::geometry::{Ray, Triangle};
@@ -22,7 +24,37 @@ pub enum Verdict {
     Tie,
 }
 
-/// The exact verdict on one triangle.
+impl Verdict {
+    /// The name in tables and files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Blocked => "blocked",
+            Self::Clear => "clear",
+            Self::Tie => "tie",
+        }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The exact verdict on one triangle; takes microseconds.
+///
+/// ```
+/// use umbra::exact::{Verdict, oracle};
+/// use umbra::geometry::Ray;
+/// use umbra::glam::Vec3;
+///
+/// let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+/// let through = |x: f32| Ray::between(Vec3::new(x, 0.5, 1.0), Vec3::new(x, 0.5, -1.0));
+/// // The edge belongs to the triangle, and what is next to it does not.
+/// assert_eq!(oracle::verdict(&through(0.5), &triangle), Verdict::Blocked);
+/// assert_eq!(oracle::verdict(&through(0.5_f32.next_up()), &triangle), Verdict::Clear);
+/// ```
 #[must_use]
 pub fn verdict(ray: &Ray, triangle: &Triangle) -> Verdict {
     if !ray.is_valid() || !triangle.iter().all(|corner| corner.is_finite()) {

@@ -21,7 +21,7 @@ pub fn is_finite(triangle: &Triangle) -> bool {
 ///
 /// 48 bytes a triangle: three corners, each padded to 16 bytes so that it loads as one vector.
 /// Because the opaque triangles come first, "is this occluder opaque" is one comparison.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangles {
     corners: Vec<[Vec3A; 3]>,
     opaque: u32,

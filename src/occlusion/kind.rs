@@ -1,11 +1,12 @@
 //! From names to backends.
 
 use std::fmt;
+use std::str::FromStr;
 use std::sync::Arc;
 
 use super::{
-    Brute, Bvh2, Cwbvh, DividedGrid, Engine, Grid, GridOptions, NestedGrid, Occlusion, TooFine,
-    Walk,
+    Brute, Bvh2, Cwbvh, DividedGrid, Engine, Grid, GridError, GridOptions, NestedGrid, Occlusion,
+    UnknownName, Walk, named,
 };
 use crate::exact::Exact;
 use crate::geometry::Triangles;
@@ -56,6 +57,14 @@ impl fmt::Display for Backend {
     }
 }
 
+impl FromStr for Backend {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        named("engine", name, &Self::ALL)
+    }
+}
+
 /// The triangle tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum Test {
@@ -91,6 +100,14 @@ impl fmt::Display for Test {
     }
 }
 
+impl FromStr for Test {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        named("triangle test", name, &Self::ALL)
+    }
+}
+
 /// What to build besides the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BuildOptions {
@@ -117,7 +134,7 @@ pub enum BackendError {
     Embree(#[from] embree_ffi::Error),
     /// The grid cannot be as fine as was asked for.
     #[error(transparent)]
-    TooFine(#[from] TooFine),
+    Grid(#[from] GridError),
     /// Embree decides by its own arithmetic.
     #[error(
         "embree has no test '{0}': its own are pluecker (robust mode) and moller (default mode)"
@@ -125,7 +142,26 @@ pub enum BackendError {
     NotInEmbree(Test),
 }
 
-/// Builds a backend over the triangles; over none, one that nothing blocks.
+/// Builds a backend over the triangles; over none, one that nothing blocks. Works on all threads of the current rayon pool. The grid
+/// takes some 0.4 of the time of Embree; [`Occlusion::memory`] says how many bytes there are then.
+///
+/// ```
+/// use std::sync::Arc;
+/// use umbra::geometry::{Ray, Triangles};
+/// use umbra::glam::Vec3;
+/// use umbra::occlusion::{Backend, BuildOptions, Tally, Test, build};
+///
+/// let wall = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| corner + Vec3::Z);
+/// let triangles = Arc::new(Triangles::from_iter([wall]));
+/// let grid = build(Backend::Grid, Test::Exact, &triangles, &BuildOptions::default())?;
+///
+/// // Many rays at once are cheaper than one by one.
+/// let rays = [0.2, 0.8].map(|x| Ray::towards(Vec3::new(x, x, 0.0), Vec3::Z));
+/// let (mut blocked, mut tally) = ([false; 2], Tally::default());
+/// grid.occluded_many(&rays, &mut blocked, &mut tally);
+/// assert_eq!(blocked, [true, false]);
+/// # Ok::<(), umbra::occlusion::BackendError>(())
+/// ```
 ///
 /// # Errors
 /// If the backend is not to be had here, or not as fine.
@@ -159,6 +195,7 @@ fn grid(
     })
 }
 
+#[cfg(feature = "embree")]
 fn embree(
     test: Test,
     triangles: &Arc<Triangles>,
@@ -169,13 +206,16 @@ fn embree(
         Test::Moller => false,
         other => return Err(BackendError::NotInEmbree(other)),
     };
-    #[cfg(feature = "embree")]
-    return Ok(Box::new(super::Embree::new(triangles.clone(), robust, options.embree)?));
-    #[cfg(not(feature = "embree"))]
-    {
-        let _ = (robust, triangles, options);
-        Err(BackendError::WithoutEmbree)
-    }
+    Ok(Box::new(super::Embree::new(triangles.clone(), robust, options.embree)?))
+}
+
+#[cfg(not(feature = "embree"))]
+fn embree(
+    _: Test,
+    _: &Arc<Triangles>,
+    _: &BuildOptions,
+) -> Result<Box<dyn Occlusion>, BackendError> {
+    Err(BackendError::WithoutEmbree)
 }
 
 fn engine<W: Walk>(

@@ -3,6 +3,7 @@
 
 use glam::Vec3;
 
+use super::film::index;
 use super::legend::{UNASKED, from_srgb, with_legend};
 use super::order::Place;
 use super::{Film, palette};
@@ -73,8 +74,8 @@ impl AnswerMap {
         Self { width, height, pixels }
     }
 
-    pub(super) fn set(&mut self, (x, y): Place, answered: Answered) {
-        self.pixels[y as usize * self.width as usize + x as usize] = answered;
+    pub(super) fn set(&mut self, place: Place, answered: Answered) {
+        self.pixels[index([self.width, self.height], place)] = answered;
     }
 
     /// What happened at a pixel.
@@ -83,8 +84,7 @@ impl AnswerMap {
     /// Outside the picture.
     #[must_use]
     pub fn at(&self, x: u32, y: u32) -> &Answered {
-        assert!(x < self.width && y < self.height, "({x}, {y}) is outside the picture");
-        &self.pixels[y as usize * self.width as usize + x as usize]
+        &self.pixels[index([self.width, self.height], (x, y))]
     }
 
     /// Each pixel in the mixture of its outcomes' colours, and below them what each colour means.

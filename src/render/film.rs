@@ -38,13 +38,31 @@ impl Film {
         &self.pixels
     }
 
+    /// One pixel; (0, 0) is at the top left.
+    ///
+    /// # Panics
+    /// Outside the picture.
+    #[must_use]
+    pub fn at(&self, x: u32, y: u32) -> Vec3 {
+        self.pixels[index([self.width, self.height], (x, y))]
+    }
+
     /// Sets one pixel.
     ///
     /// # Panics
     /// Outside the picture.
-    pub fn set(&mut self, (x, y): Place, colour: Vec3) {
-        self.pixels[y as usize * self.width as usize + x as usize] = colour;
+    pub fn set(&mut self, place: Place, colour: Vec3) {
+        self.pixels[index([self.width, self.height], place)] = colour;
     }
+}
+
+/// Where a pixel of a picture is, row by row from the top.
+///
+/// # Panics
+/// Outside the picture.
+pub(super) fn index([width, height]: [u32; 2], (x, y): Place) -> usize {
+    assert!(x < width && y < height, "({x}, {y}) is outside the picture of {width}x{height}");
+    y as usize * width as usize + x as usize
 }
 
 /// Of one pixel and one light: how many of the pixel's samples asked, and how many were blocked.
@@ -71,8 +89,8 @@ impl ShadowMask {
         Self { width, height, lights, seen }
     }
 
-    pub(super) fn set(&mut self, (x, y): Place, seen: &[Seen]) {
-        let first = (y as usize * self.width as usize + x as usize) * self.lights;
+    pub(super) fn set(&mut self, place: Place, seen: &[Seen]) {
+        let first = index([self.width, self.height], place) * self.lights;
         self.seen[first..first + self.lights].copy_from_slice(seen);
     }
 
@@ -88,7 +106,7 @@ impl ShadowMask {
     /// Outside the picture.
     #[must_use]
     pub fn at(&self, x: u32, y: u32) -> &[Seen] {
-        let first = (y as usize * self.width as usize + x as usize) * self.lights;
+        let first = index([self.width, self.height], (x, y)) * self.lights;
         &self.seen[first..first + self.lights]
     }
 

@@ -22,7 +22,7 @@ mod whitted;
 mod work;
 
 pub use answers::{AnswerMap, Answered, Shown};
-pub use film::{Film, ShadowMask};
+pub use film::{Film, Seen, ShadowMask};
 pub use forecast::forecast;
 pub use legend::{UNASKED, from_srgb, with_legend};
 pub use order::{Order, Place};
@@ -68,10 +68,31 @@ pub struct Progress {
 
 /// Renders a scene.
 ///
-/// Runs in the current rayon pool; to choose the number of threads, install one.
+/// ```
+/// use umbra::occlusion::{Backend, BuildOptions, Test, build};
+/// use umbra::render::{Picture, Progress, Settings, encode_picture, render};
+/// use umbra::scene::builtin;
+/// use umbra::shadow::{Method, prepare};
+///
+/// let scene = builtin::draft_at("drum", 0.01)?.finish()?;
+/// let backend = build(Backend::Grid, Test::Exact, &scene.triangles, &BuildOptions::default())?;
+/// let shadows = prepare(Method::ObjectCache, &scene, &*backend)?;
+/// let settings = Settings { width: 16, height: 12, ..Settings::default() };
+/// let film = render(&scene, &*backend, &*shadows, &settings, &Progress::default())?.film;
+///
+/// let png = encode_picture(&film, film.automatic_exposure(), Picture::Png8);
+/// assert!(png.starts_with(b"\x89PNG"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Runs in the current rayon pool; to choose the number of threads, install one. The backend is one over the scene's
+/// triangles, and `shadows` were [prepared](crate::shadow::prepare) for that scene and backend.
 ///
 /// # Errors
-/// If the settings make no picture.
+/// If the settings make no picture of this scene.
+///
+/// # Panics
+/// If the backend is over triangles of another scene, and a ray meets one that this scene does not have.
 pub fn render(
     scene: &Scene,
     backend: &dyn Occlusion,
@@ -79,7 +100,7 @@ pub fn render(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Rendered, SettingsError> {
-    settings.check()?;
+    settings.check_for(scene.lights.len())?;
     let Units { pixels: units, order } = Units::of(scene, backend, settings);
     // One by one in this order: a range would be halved, and its second half begun as soon as its first.
     let mut done: Vec<_> = order
@@ -129,7 +150,7 @@ pub fn record(
     settings: &Settings,
     mut take: impl FnMut(Vec<RecordedQuery>),
 ) -> Result<(), SettingsError> {
-    settings.check()?;
+    settings.check_for(scene.lights.len())?;
     let settings = Settings { record: true, ..*settings };
     for pixels in &Units::of(scene, backend, &settings).pixels {
         let unit = Unit::new(scene, backend, shadows, &settings);

@@ -1,6 +1,10 @@
 //! The order in which pixels are rendered, and how it is cut into units of work.
 
+use std::fmt;
+use std::str::FromStr;
+
 use crate::geometry::along_hilbert;
+use crate::occlusion::{UnknownName, named};
 
 /// Pixels along the side of the smallest and the largest tiles.
 const SIDES: [u32; 2] = [8, 64];
@@ -29,6 +33,19 @@ pub enum Order {
 pub type Place = (u32, u32);
 
 impl Order {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Scanline, Self::Serpentine, Self::Tiles];
+
+    /// The name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Scanline => "scanline",
+            Self::Serpentine => "serpentine",
+            Self::Tiles => "tiles",
+        }
+    }
+
     /// Whether the queries of a whole unit may be asked together, light by light. The scanline orders
     /// are the paper's: there one sample is finished before the next begins.
     #[must_use]
@@ -37,6 +54,9 @@ impl Order {
     }
 
     /// The pixels of each unit before dear ones are cut, in the order in which they are rendered; `samples` of them along a pixel's side.
+    ///
+    /// # Panics
+    /// If a unit of a scanline order has no rows.
     #[must_use]
     pub fn units(
         self,
@@ -59,6 +79,20 @@ impl Order {
     fn row(self, y: u32, width: u32) -> impl Iterator<Item = Place> {
         let backward = self == Self::Serpentine && y % 2 == 1;
         (0..width).map(move |x| (if backward { width - 1 - x } else { x }, y))
+    }
+}
+
+impl fmt::Display for Order {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Order {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        named("order", name, &Self::ALL)
     }
 }
 
@@ -102,7 +136,7 @@ mod tests {
 
     #[test]
     fn every_order_renders_every_pixel_once() {
-        for order in [Order::Scanline, Order::Serpentine, Order::Tiles] {
+        for order in Order::ALL {
             for (width, height) in [(1, 1), (17, 33), (100, 3), (16, 16)] {
                 let mut places: Vec<Place> = order.units([width, height], 8, 2).concat();
                 places.sort_unstable();

@@ -22,11 +22,13 @@ pub enum Picture {
 /// Why a picture was not written.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
-    /// The name does not say what it should be.
-    #[error("{path}: a picture's name must end in .png or .exr", path = path.display())]
+    /// The name does not say what the picture is, or says something else.
+    #[error("{path}: {problem}", path = path.display())]
     Kind {
         /// The name.
         path: PathBuf,
+        /// What to do.
+        problem: String,
     },
     /// The place cannot be written.
     #[error("cannot write {path}: {reason}", path = path.display())]
@@ -34,6 +36,7 @@ pub enum OutputError {
         /// The place.
         path: PathBuf,
         /// What the system said.
+        #[source]
         reason: std::io::Error,
     },
 }
@@ -42,14 +45,27 @@ impl Picture {
     /// The kind that a file name asks for; `bits` (8 or 16) decides between the two of PNG.
     ///
     /// # Errors
-    /// If the name ends in neither `.png` nor `.exr`.
+    /// [`OutputError::Kind`] if the name ends in neither `.png` nor `.exr`, or a PNG is to have other bits.
     pub fn of(path: &Path, bits: u8) -> Result<Self, OutputError> {
-        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-            Some("png") if bits == 16 => Ok(Self::Png16),
-            Some("png") => Ok(Self::Png8),
-            Some("exr") => Ok(Self::OpenExr),
-            _ => Err(OutputError::Kind { path: path.to_owned() }),
+        let wrong = |problem| Err(OutputError::Kind { path: path.to_owned(), problem });
+        let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+        match (extension.as_deref(), bits) {
+            (Some("png"), 8) => Ok(Self::Png8),
+            (Some("png"), 16) => Ok(Self::Png16),
+            (Some("png"), _) => wrong(format!("a PNG has 8 or 16 bits a channel, not {bits}")),
+            (Some("exr"), _) => Ok(Self::OpenExr),
+            _ => wrong("a picture's name must end in .png or .exr".to_owned()),
         }
+    }
+
+    /// Whether a file of this name is to hold such a picture.
+    fn check(self, path: &Path) -> Result<(), OutputError> {
+        let bits = if self == Self::Png16 { 16 } else { 8 };
+        if Self::of(path, bits)? == self {
+            return Ok(());
+        }
+        let problem = format!("its name is not that of {self:?}; give another name or kind");
+        Err(OutputError::Kind { path: path.to_owned(), problem })
     }
 }
 
@@ -71,7 +87,8 @@ impl Film {
         }
         let rank = ((brightest.len() - 1) as f32 * (1.0 - BURNT_OUT)) as usize;
         let (_, white, _) = brightest.select_nth_unstable_by(rank, f32::total_cmp);
-        white.recip()
+        // So dark that the factor would be infinite is black anyway.
+        white.recip().min(f32::MAX)
     }
 }
 
@@ -92,9 +109,11 @@ impl Film {
 /// The bytes of a picture; `exposure` is the factor from film to picture.
 ///
 /// # Panics
-/// Without pixels, or with more than the format has room for; no film that was rendered is like that.
+/// Without pixels, or with more than the format has room for; no film that was rendered is like that. If the exposure
+/// is not a finite number above 0.
 #[must_use]
 pub fn encode_picture(film: &Film, exposure: f32, kind: Picture) -> Vec<u8> {
+    assert!(exposure > 0.0 && exposure.is_finite(), "an exposure of {exposure} makes no picture");
     let (width, height) = (film.width(), film.height());
     let values = || film.displayed(exposure).flat_map(|pixel| pixel.to_array());
     let whole = "film and picture are of one size";
@@ -123,13 +142,17 @@ pub fn encode_picture(film: &Film, exposure: f32, kind: Picture) -> Vec<u8> {
 /// Writes a picture; `exposure` is the factor from film to picture.
 ///
 /// # Errors
-/// If the place cannot be written; what was there is untouched.
+/// If the name is not that of such a picture, or the place cannot be written; what was there is untouched.
+///
+/// # Panics
+/// As [`encode_picture`] does.
 pub fn write_picture(
     film: &Film,
     exposure: f32,
     kind: Picture,
     path: &Path,
 ) -> Result<(), OutputError> {
+    kind.check(path)?;
     write_whole(path, &encode_picture(film, exposure, kind))
         .map_err(|reason| OutputError::Unwritable { path: path.to_owned(), reason })
 }

@@ -69,6 +69,16 @@ pub enum SettingsError {
     /// More than the path table holds.
     #[error("depth {0}: the table of a ray's path holds {max} reflections and refractions; give 0 to {max}", max = Path::MAX_LEVEL)]
     Depth(u8),
+    /// The light whose answers are to be kept is not there.
+    #[error(
+        "answers of light {light}: the scene has {lights} lights, counted from 0; name one of these, or none"
+    )]
+    Light {
+        /// Its index.
+        light: u32,
+        /// How many there are.
+        lights: usize,
+    },
     /// Units without rows.
     #[error("a band of scanlines needs at least one row")]
     Rows,
@@ -81,7 +91,8 @@ impl Settings {
         self.order.units([self.width, self.height], self.rows_per_unit, self.samples)
     }
 
-    /// Whether these settings make a picture.
+    /// Whether these settings make a picture of some scene; [`render`](super::render()) also looks whether the scene has the light
+    /// whose answers are to be kept.
     ///
     /// # Errors
     /// Says which one does not, and what would.
@@ -100,5 +111,14 @@ impl Settings {
             return Err(SettingsError::Rows);
         }
         Ok(())
+    }
+
+    /// The same of a scene with so many lights.
+    pub(super) fn check_for(&self, lights: usize) -> Result<(), SettingsError> {
+        self.check()?;
+        match self.answers.and_then(|shown| shown.light) {
+            Some(light) if light as usize >= lights => Err(SettingsError::Light { light, lights }),
+            _ => Ok(()),
+        }
     }
 }

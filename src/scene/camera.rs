@@ -50,11 +50,18 @@ impl Camera {
         Ray::towards(self.position.as_vec3(), direction.normalize().as_vec3())
     }
 
-    /// Whether its numbers are finite and its field of view is between 0 and 180 degrees.
+    /// Whether its place is finite, also in f32, its axes are unit vectors at right angles, but for rounding, and its field of view
+    /// is between 0 and 180 degrees.
     #[must_use]
     pub fn is_sound(&self) -> bool {
-        let vectors = [self.position, self.right, self.up, self.forward];
-        vectors.iter().all(|v| v.is_finite())
+        /// What a few operations in f32 leave of a right angle and of a length of one.
+        const ROUNDING: f64 = 1e-4;
+        let [right, up, forward] = [self.right, self.up, self.forward];
+        let is_one = |product: f64| (product - 1.0).abs() < ROUNDING;
+        let is_zero = |product: f64| product.abs() < ROUNDING;
+        self.position.as_vec3().is_finite()
+            && [right, up, forward].iter().all(|axis| is_one(axis.length()))
+            && [right.dot(up), up.dot(forward), forward.dot(right)].into_iter().all(is_zero)
             && self.field_of_view > 0.0
             && self.field_of_view < std::f64::consts::PI
     }

@@ -5,7 +5,10 @@ use std::{fmt, path::PathBuf, sync::Arc};
 use glam::{DVec3, Vec3};
 
 use super::{
-    Camera, Light, Material, Scene, SceneError, light::is_colour, material::listed, sensible,
+    Camera, Light, Material, Scene, SceneError,
+    light::{is_colour, is_exposure},
+    material::listed,
+    sensible,
 };
 use crate::geometry::{Triangle, Triangles};
 
@@ -49,8 +52,28 @@ impl fmt::Display for Dropped {
     }
 }
 
-/// A scene in the making.
-#[derive(Clone, Debug, Default)]
+/// A scene in the making: how triangles that are in no file become a [`Scene`].
+///
+/// ```
+/// use umbra::glam::{DVec3, Vec3};
+/// use umbra::scene::{Draft, DraftTriangle, Light};
+///
+/// let corners = [DVec3::ZERO, DVec3::X, DVec3::Z];
+/// let floor = DraftTriangle { corners, normals: [Vec3::ZERO; 3], material: 0 };
+/// let lamp = Light::Point { position: 2.0 * DVec3::Y, intensity: Vec3::ONE };
+/// let draft = Draft {
+///     name: "floor".to_owned(),
+///     triangles: vec![floor],
+///     lights: vec![lamp],
+///     ..Draft::default()
+/// };
+/// let scene = draft.finish()?;
+/// assert_eq!((scene.triangles.len(), scene.lights.len()), (1, 1));
+/// // There was no camera, so one was added.
+/// assert!(scene.notes[0].starts_with("no usable camera"));
+/// # Ok::<(), umbra::scene::SceneError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Draft {
     /// Name for messages.
     pub name: String,
@@ -88,8 +111,13 @@ impl Draft {
     /// Moves, rounds, checks and orders everything.
     ///
     /// # Errors
-    /// [`SceneError::Empty`] if no triangle is left, [`SceneError::TooLarge`] beyond 2³² triangles.
+    /// [`SceneError::Empty`] if no triangle is left, [`SceneError::TooLarge`] beyond 2³² triangles,
+    /// [`SceneError::Unsound`] if a triangle has a material that is not there. Lights, a camera and surroundings whose
+    /// numbers make no sense are no error: they are left out with a note, and others take their place.
     pub fn finish(mut self) -> Result<Scene, SceneError> {
+        if self.name.is_empty() {
+            self.name = "unnamed scene".to_owned();
+        }
         if self.triangles.len() > u32::MAX as usize {
             return Err(SceneError::TooLarge {
                 name: self.name,
@@ -102,11 +130,12 @@ impl Draft {
         if self.materials.is_empty() {
             self.materials.push(Material::default());
         }
+        self.check_materials()?;
         self.clamp_materials();
         let origin = self.local_origin();
         if origin != DVec3::ZERO {
             self.notes.push(format!(
-                "geometry is far from the origin: its local origin is ({}, {}, {}) of the file",
+                "geometry is far from the origin: its local origin is at ({}, {}, {}) of the world",
                 origin.x, origin.y, origin.z
             ));
         }
@@ -199,6 +228,20 @@ impl Draft {
         }
     }
 
+    /// Refuses a triangle whose material is not there.
+    fn check_materials(&self) -> Result<(), SceneError> {
+        let count = self.materials.len();
+        let missing = |triangle: &DraftTriangle| triangle.material as usize >= count;
+        let Some(index) = self.triangles.iter().position(missing) else { return Ok(()) };
+        let material = self.triangles[index].material;
+        Err(SceneError::Unsound {
+            name: self.name.clone(),
+            problem: format!(
+                "triangle {index} is of material {material}, and there are {count}, counted from 0; give one of these"
+            ),
+        })
+    }
+
     /// The same for what a surface makes of light.
     fn clamp_materials(&mut self) {
         let mut changed = Vec::new();
@@ -224,7 +267,7 @@ impl Draft {
                     .to_owned(),
             );
         }
-        if self.exposure.is_some_and(|factor| !(factor > 0.0 && factor.is_finite())) {
+        if self.exposure.is_some_and(|factor| !is_exposure(factor)) {
             self.exposure = None;
             self.notes.push("left out an exposure that makes no sense".to_owned());
         }

@@ -13,6 +13,7 @@ pub enum SceneError {
         /// The file.
         path: PathBuf,
         /// What the system said.
+        #[source]
         reason: std::io::Error,
     },
     /// The file could not be written.
@@ -21,7 +22,14 @@ pub enum SceneError {
         /// The file.
         path: PathBuf,
         /// What the system said.
+        #[source]
         reason: std::io::Error,
+    },
+    /// Scenes are not written to files of such a name.
+    #[error("{path}: scenes are written as .obj or .glb; give a name that ends so", path = path.display())]
+    UnknownKind {
+        /// The file.
+        path: PathBuf,
     },
     /// The file was read but is not what its name says.
     #[error("{path}: {problem}", path = path.display())]
@@ -46,6 +54,14 @@ pub enum SceneError {
         name: String,
         /// What was dropped, as text, or empty.
         dropped: String,
+    },
+    /// A part of it makes no sense, and nothing else can stand in its place.
+    #[error("{name}: {problem}")]
+    Unsound {
+        /// The scene.
+        name: String,
+        /// What is wrong, where, and what to do.
+        problem: String,
     },
     /// More triangles than a 32-bit index holds, or than memory holds.
     #[error("{name}: {problem}")]

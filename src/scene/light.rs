@@ -105,7 +105,8 @@ impl Light {
         }
     }
 
-    /// Whether its numbers are finite, also in f32, its vectors point somewhere, and its colour is not negative.
+    /// Whether its numbers are finite, also in f32, its vectors point somewhere, its colour is not negative, and the
+    /// half angles of a spot are 0 ≤ inner ≤ outer ≤ π with outer above 0.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         let place = |place: &DVec3| place.as_vec3().is_finite();
@@ -113,7 +114,10 @@ impl Light {
             Self::Point { position, intensity } => place(position) && is_colour(intensity),
             Self::Spot { position, axis, intensity, inner, outer } => {
                 let vectors = place(position) && unit(*axis).is_some();
-                vectors && is_colour(intensity) && inner.is_finite() && outer.is_finite()
+                // Half a turn as f32 has it, for files do, is a little more than as f64 has it.
+                let half_a_turn = f64::from(std::f32::consts::PI);
+                let cone = *outer > 0.0 && *outer <= half_a_turn && (0.0..=*outer).contains(inner);
+                vectors && is_colour(intensity) && cone
             }
             Self::Directional { direction, irradiance } => {
                 unit(*direction).is_some() && is_colour(irradiance)
@@ -147,6 +151,11 @@ pub(super) fn is_colour(colour: &Vec3) -> bool {
     colour.is_finite() && colour.cmpge(Vec3::ZERO).all()
 }
 
+/// Whether a factor from radiance to picture values is one.
+pub(super) fn is_exposure(factor: f32) -> bool {
+    factor > 0.0 && factor.is_finite()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,6 +175,23 @@ mod tests {
         }
         let rounded = Vec3::new(1.0, 2.0, 3.0).normalize().as_dvec3();
         assert_eq!(sun(rounded).with_unit_vectors(), sun(rounded));
+    }
+
+    #[test]
+    fn a_cone_that_is_wider_within_than_without_is_no_light() {
+        let spot = |inner: f64, outer: f64| Light::Spot {
+            position: DVec3::ZERO,
+            axis: DVec3::NEG_Y,
+            intensity: Vec3::ONE,
+            inner,
+            outer,
+        };
+        for (inner, outer) in [(0.0, 0.5), (0.5, 0.5), (0.0, 180f64.to_radians())] {
+            assert!(spot(inner, outer).is_sound(), "{inner} {outer}");
+        }
+        for (inner, outer) in [(0.5, 0.4), (-0.1, 0.5), (0.0, 0.0), (0.0, 4.0), (f64::NAN, 0.5)] {
+            assert!(!spot(inner, outer).is_sound(), "{inner} {outer}");
+        }
     }
 
     #[test]

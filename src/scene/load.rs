@@ -15,6 +15,19 @@ const READABLE: &str = ".obj, .glb, .gltf and .toml";
 /// Loads a scene: the name of a built-in one, or a path that ends in `.obj`, `.glb`, `.gltf` or
 /// `.toml` (in any case).
 ///
+/// What the file does not say is chosen, and what makes no sense is left out; [`Scene::notes`] says so in words.
+///
+/// ```no_run
+/// let scene = umbra::scene::load("gallery.toml")?;
+/// println!("{} triangles, {} lights", scene.triangles.len(), scene.lights.len());
+/// for note in &scene.notes {
+///     println!("{note}");
+/// }
+/// # Ok::<(), umbra::scene::SceneError>(())
+/// ```
+///
+#[doc = include_str!("description.md")]
+///
 /// # Errors
 /// What is wrong with the name or the file, in one line.
 pub fn load(name_or_path: impl AsRef<Path>) -> Result<Scene, SceneError> {

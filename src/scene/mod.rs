@@ -37,7 +37,11 @@ pub use write::{files, write};
 use crate::geometry::{Bounds, TriangleId, Triangles};
 
 /// A scene ready for queries and rendering, in local f32 coordinates.
-#[derive(Clone, Debug)]
+///
+/// Geometry far from the world's origin is moved before it is rounded to f32, or it would lose its detail: local
+/// coordinates are those of the world minus [`origin`](Self::origin), which is zero for most scenes. Whoever brings
+/// rays of their own takes [`to_local`](Self::to_local) of their ends.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Name for messages and statistics.
     pub name: String,
@@ -60,7 +64,7 @@ pub struct Scene {
     pub background: Vec3,
     /// Factor from radiance to picture values; `None`: chosen from the picture.
     pub exposure: Option<f32>,
-    /// World coordinates = local coordinates + this.
+    /// World coordinates = local coordinates + this; see [`Scene::to_local`].
     pub origin: DVec3,
     /// What was left out of the file.
     pub dropped: Dropped,
@@ -71,7 +75,39 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A point of the world in the scene's coordinates, moved in f64 and rounded once, as its corners were.
+    ///
+    /// ```
+    /// # use umbra::scene::{Draft, DraftTriangle};
+    /// use umbra::geometry::Ray;
+    /// use umbra::glam::{DVec3, Vec3};
+    ///
+    /// // A sheet 4 m above the ground, in metres of a national grid.
+    /// let place = DVec3::new(84_992.25, 447_488.5, 4.0);
+    /// let corners = [place, place + 2.0 * DVec3::X, place + 2.0 * DVec3::Y];
+    /// let sheet = DraftTriangle { corners, normals: [Vec3::ZERO; 3], material: 0 };
+    /// let scene = Draft { triangles: vec![sheet], ..Draft::default() }.finish()?;
+    ///
+    /// let below = place + DVec3::new(0.5, 0.5, -4.0);
+    /// let ray = Ray::between(scene.to_local(below), scene.to_local(below + 9.0 * DVec3::Z));
+    /// assert!(umbra::exact::blocks(&ray, &scene.triangles.get(0)));
+    /// # Ok::<(), umbra::scene::SceneError>(())
+    /// ```
+    #[must_use]
+    pub fn to_local(&self, world: DVec3) -> Vec3 {
+        (world - self.origin).as_vec3()
+    }
+
+    /// A point of the scene in the coordinates of the world.
+    #[must_use]
+    pub fn to_world(&self, local: Vec3) -> DVec3 {
+        local.as_dvec3() + self.origin
+    }
+
     /// The material of a triangle.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
     #[must_use]
     #[inline]
     pub fn material(&self, triangle: TriangleId) -> &Material {
@@ -81,10 +117,10 @@ impl Scene {
     /// The box of all triangles.
     ///
     /// # Panics
-    /// Never: a scene has at least one triangle.
+    /// Without a triangle that is finite; a scene that [`Draft::finish`] made has one.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        self.triangles.bounds().expect("a scene has triangles")
+        self.triangles.bounds().expect("a scene has a finite triangle")
     }
 
     /// Whether any triangle lets light through.

@@ -41,7 +41,9 @@ pub(super) fn add_camera(scene: &mut Scene, up: Option<DVec3>) {
     };
     scene.camera = camera;
     let axis = if up == DVec3::Z { ", with Z up," } else { "" };
-    scene.notes.push(format!("no usable camera in the file: one{axis} that {what} was added"));
+    scene
+        .notes
+        .push(format!("no usable camera{}: one{axis} that {what} was added", of_file(scene)));
 }
 
 /// Whether the extent along an axis is much smaller than both others.
@@ -104,7 +106,12 @@ pub(super) fn add_lights(scene: &mut Scene) {
         scene.lights.push(light);
     }
     scene.lights.extend(found.lights);
-    scene.notes.push(format!("no usable light in the file: added {}", added.join(" and ")));
+    scene.notes.push(format!("no usable light{}: added {}", of_file(scene), added.join(" and ")));
+}
+
+/// Where it was looked for; not every scene comes from a file.
+fn of_file(scene: &Scene) -> &'static str {
+    if scene.files.is_empty() { "" } else { " in the file" }
 }
 
 /// A sun low enough for shadows to be seen.

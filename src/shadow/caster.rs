@@ -33,6 +33,10 @@ impl<'a, M: Memory, K: Shelf<M>> Cached<'a, M, K> {
         Self { backend, opaque, verdicts, shelf, shared, plan }
     }
 
+    pub(super) fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
     fn caster<I: Inquiry>(&self, inquiry: I) -> Caster<'_, M, K, I> {
         let mut caster = Caster::new(inquiry, self.shelf.clone(), self.shared.clone());
         caster.verdicts = (!self.verdicts.is_empty()).then_some(&self.verdicts);

@@ -7,7 +7,7 @@ use crate::occlusion::{Cell, LeftOut, Occluder, Occlusion, Tally};
 
 /// Asks a backend; owned by a worker. What a memory names is checked here, so that it may name
 /// anything: a triangle that is none, or not opaque, and a cell out of range are "not there".
-pub trait Inquiry {
+pub trait Inquiry: Send {
     /// A new query begins.
     fn begin(&mut self, query: &ShadowQuery);
 

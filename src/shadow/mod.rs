@@ -22,6 +22,7 @@ mod budget;
 mod cache_tree;
 mod caster;
 mod combination;
+mod debug;
 mod inquiry;
 mod kind;
 mod light_buffer;
@@ -96,12 +97,14 @@ pub trait Prepared: Send + Sync {
     }
 }
 
-/// Answers shadow queries for one worker.
-pub trait Shadows {
-    /// Answers queries towards one light. Transparent triangles do not count here.
+/// Answers shadow queries for one worker; may move to another thread, but serves one at a time.
+pub trait Shadows: Send {
+    /// Answers queries towards one light, by its index in the scene that the method was prepared for. Transparent triangles do not
+    /// count here.
     ///
     /// # Panics
-    /// If the slices differ in length.
+    /// If the slices differ in length. If the scene has no such light, methods that prepare something for each light
+    /// panic, and the others answer.
     fn answer(&mut self, light: usize, queries: &[ShadowQuery], answers: &mut [Answer]);
 
     /// A new scanline begins: §8 of the paper forgets what was remembered.

@@ -117,10 +117,40 @@ pub enum MethodError {
     LeavesOut(Combination),
 }
 
-/// Makes a method ready for a scene and a backend over its triangles.
+/// Makes a method ready for a scene and a backend over its triangles, and over no others: that is not checked, and
+/// before a backend over another scene answers are about neither, or asking panics.
+///
+/// ```
+/// # use umbra::glam::Vec3;
+/// # use umbra::occlusion::{Backend, BuildOptions, Test, build};
+/// # use umbra::scene::builtin;
+/// use umbra::shadow::{Answer, Combination, Path, ShadowQuery, prepare};
+///
+/// # let scene = builtin::draft_at("chair-room", 0.01)?.finish()?;
+/// # let backend = build(Backend::Grid, Test::Exact, &scene.triangles, &BuildOptions::default())?;
+/// let method: Combination = "shaft+object-cache".parse()?;
+/// let prepared = prepare(method, &scene, &*backend)?;
+///
+/// // From the middle of the scene to its first light.
+/// let ray = scene.lights[0].shadow_ray(scene.bounds().centre().as_vec3());
+/// let queries = [ShadowQuery { ray, path: Path::EYE, spawner: 0 }];
+/// let mut answers = [Answer::default()];
+/// prepared.worker().answer(0, &queries, &mut answers);
+/// println!("{}", if answers[0].blocked { "dark" } else { "lit" });
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// What it costs depends on the verdicts: none takes nothing, `light-buffer` prepares a light when it is first asked
+/// about, the others prepare here. Each worker answers by itself; share the method among threads, and give each a worker.
+///
+/// A plan is one method. [`Auto::new`](super::Auto::new), which chooses among them, is no plan, as it has to be told the backend's
+/// test: exact or not decides whom it may ask. What it gives is a [`Prepared`] like any other.
 ///
 /// # Errors
-/// If method and scene or backend do not go together.
+/// If the options make no sense, alone or together.
+///
+/// # Panics
+/// If the scene has no triangle that is finite; one that [`Draft::finish`](crate::scene::Draft::finish) made has.
 pub fn prepare<'a>(
     plan: impl Into<Plan>,
     scene: &Scene,

@@ -1,5 +1,7 @@
 //! A shadow query and its answer.
 
+use std::fmt;
+
 use crate::geometry::{Ray, TriangleId};
 
 /// Where in the tree of reflected and refracted rays a query was spawned: the bit table of the
@@ -105,6 +107,12 @@ impl Outcome {
             Self::VerdictBlocked => "verdict-blocked",
             Self::VerdictLit => "verdict-lit",
         }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 

@@ -6,6 +6,7 @@ use crate::geometry::Ray;
 use crate::occlusion::Occlusion;
 
 /// Asks the backend, in batches.
+#[derive(Debug)]
 pub struct Trace<'a> {
     backend: &'a dyn Occlusion,
     verdicts: Verdicts<'a>,

@@ -147,6 +147,11 @@ impl<'a> Verdicts<'a> {
         self.0.push(Stacked { kind, verdict, build_seconds: start.elapsed().as_secs_f64() });
     }
 
+    /// Which they are, in the order in which they are asked.
+    pub fn kinds(&self) -> impl Iterator<Item = VerdictKind> {
+        self.0.iter().map(|stacked| stacked.kind)
+    }
+
     /// Whether there are none.
     #[must_use]
     #[inline(always)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::report::{bits, name_of};
+use super::report::bits;
 use super::{Disagreement, Report};
 use crate::exact::Verdict;
 
@@ -30,7 +30,7 @@ impl Report {
                 found.light,
                 found.kind.name(),
                 said(found.blocked),
-                name_of(found.exact),
+                found.exact.name(),
                 if found.explained { "yes" } else { "no" },
                 found.ray.end,
                 bits(&found.ray)
@@ -69,7 +69,7 @@ impl Report {
             (Some(id), Verdict::Clear) => format!(", though triangle {id} is reported"),
             (Some(id), _) => format!(", by triangle {id}"),
         };
-        let (exact, bits) = (name_of(exact), bits(&ray));
+        let (exact, bits) = (exact.name(), bits(&ray));
         let _ = writeln!(text, "pixel {x},{y} light {light}: {exact}{triangle}; ray {bits}");
         for (blocked, explained) in [(false, false), (true, false), (false, true), (true, true)] {
             let names: Vec<&str> = found

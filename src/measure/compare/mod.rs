@@ -32,6 +32,7 @@ mod rounding;
 mod table;
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
@@ -69,12 +70,25 @@ pub enum CompareError {
         "{0}: no shadow query is asked in this picture; give the scene another camera or light"
     )]
     NoQueries(String),
+    /// The queries are not this scene's.
+    #[error(
+        "{scene}: a query asks about light {light}, and there are {lights}, counted from 0; give a recording of this scene"
+    )]
+    NoLight {
+        /// The scene.
+        scene: String,
+        /// The light that is asked about.
+        light: usize,
+        /// How many there are.
+        lights: usize,
+    },
     /// An engine cannot be used.
     #[error("{contender}: {error}")]
     Backend {
         /// Whose.
         contender: String,
         /// Why.
+        #[source]
         error: BackendError,
     },
     /// A method cannot be used.
@@ -83,17 +97,39 @@ pub enum CompareError {
         /// Whose.
         contender: String,
         /// Why.
+        #[source]
         error: MethodError,
     },
 }
 
 /// Has all contenders answer the queries of a recording; `answered` counts queries, for whoever shows progress.
 ///
+/// ```
+/// use std::sync::atomic::AtomicU64;
+/// use umbra::measure::{compare::compare, contender::Choice, recording::Recording};
+/// use umbra::occlusion::{Backend, Test};
+/// use umbra::render::{Progress, Settings};
+/// use umbra::scene::builtin;
+///
+/// let scene = builtin::draft_at("drum", 0.01)?.finish()?;
+/// let settings = Settings { width: 8, height: 6, ..Settings::default() };
+/// let recording = Recording::of(&scene, &settings, &Progress::default())?;
+/// let choice = Choice {
+///     backends: vec![Backend::Grid, Backend::Bvh2],
+///     tests: vec![Test::Exact],
+///     ..Choice::default()
+/// };
+/// let contenders = choice.select().contenders;
+/// let report = compare(&scene, &recording, &contenders, &AtomicU64::new(0))?;
+/// assert!(report.disagreements.is_empty() && report.failure().is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Engines are built one after the other and dropped, so memory holds the scene, one engine, one culler, and the
 /// queries with their verdicts.
 ///
 /// # Errors
-/// If there is nothing to compare, or a contender cannot be built.
+/// If there is nothing to compare, a query asks about a light that the scene does not have, or a contender cannot be built.
 pub fn compare(
     scene: &Scene,
     recording: &Recording,
@@ -105,6 +141,10 @@ pub fn compare(
     }
     if recording.queries().is_empty() {
         return Err(CompareError::NoQueries(scene.name.clone()));
+    }
+    let lights = scene.lights.len();
+    if let Some((light, _)) = recording.runs().find(|(light, _)| *light >= lights) {
+        return Err(CompareError::NoLight { scene: scene.name.clone(), light, lights });
     }
     let mut comparison = Comparison::new(scene, recording);
     let mut last = None;
@@ -133,6 +173,17 @@ pub struct Comparison<'a> {
     truth: Vec<Truth>,
     rows: Vec<Row>,
     disagreements: Vec<Disagreement>,
+}
+
+impl fmt::Debug for Comparison<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Comparison")
+            .field("scene", &self.scene.name)
+            .field("queries", &self.truth.len())
+            .field("contenders", &self.rows.len())
+            .field("disagreements", &self.disagreements.len())
+            .finish_non_exhaustive()
+    }
 }
 
 impl<'a> Comparison<'a> {

@@ -176,15 +176,6 @@ impl Report {
     }
 }
 
-/// "blocked", "clear" or "tie".
-pub(super) fn name_of(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Blocked => "blocked",
-        Verdict::Clear => "clear",
-        Verdict::Tie => "tie",
-    }
-}
-
 /// Origin, direction and end, as the bits of their f32: eight hexadecimal digits each.
 pub(super) fn bits(ray: &Ray) -> String {
     let [x, y, z] = ray.origin.to_array();
@@ -194,7 +185,7 @@ pub(super) fn bits(ray: &Ray) -> String {
 }
 
 fn serialize_verdict<S: Serializer>(verdict: &Verdict, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(name_of(*verdict))
+    serializer.serialize_str(verdict.name())
 }
 
 fn serialize_ray<S: Serializer>(ray: &Ray, serializer: S) -> Result<S::Ok, S::Error> {

@@ -177,6 +177,10 @@ impl Choice {
         let methods = or_all(&self.methods, || vec![Combination::default()]);
         let mut selection = Selection::default();
         for backend in self.backends() {
+            if backend == Backend::Embree && !cfg!(feature = "embree") {
+                selection.left_out.push(format!("{backend}: {}", BackendError::WithoutEmbree));
+                continue;
+            }
             for &test in &tests {
                 if backend == Backend::Embree && !matches!(test, Test::Pluecker | Test::Moller) {
                     // Of a test that nobody named, nobody misses it.
@@ -249,7 +253,12 @@ mod tests {
         let (backends, tests) = (vec![Backend::Embree, Backend::Grid], vec![Test::Exact]);
         let selection = Choice { backends, tests, ..Choice::default() }.select();
         assert_eq!(selection.contenders, [Contender::new(Backend::Grid, Test::Exact)]);
-        assert!(selection.left_out[0].starts_with("embree exact: embree has no test 'exact'"));
+        let told = if cfg!(feature = "embree") {
+            "embree exact: embree has no test 'exact'"
+        } else {
+            "embree: this umbra was built without Embree"
+        };
+        assert!(selection.left_out[0].starts_with(told), "{:?}", selection.left_out);
     }
 
     #[test]

@@ -68,11 +68,7 @@ pub(super) fn worst(
             direction: direction.to_array(),
             end: end.is_finite().then_some(end),
             bits: bits(&recorded.query.ray),
-            verdict: match truth[number as usize] {
-                Verdict::Blocked => "blocked",
-                Verdict::Clear => "clear",
-                Verdict::Tie => "tie",
-            },
+            verdict: truth[number as usize].name(),
             by: by[&number].iter().map(|point| point.name.clone()).collect(),
         }
     };

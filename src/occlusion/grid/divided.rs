@@ -23,7 +23,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::nested::Threads;
-use super::{Grid, GridOptions, NestedGrid, Steps, TooFine};
+use super::{Grid, GridError, GridOptions, NestedGrid, Steps};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::{Ray, TriangleId, Triangles};
 use crate::occlusion::brute::visit_all;
@@ -58,8 +58,8 @@ impl DividedGrid {
     /// be done when rays come.
     ///
     /// # Errors
-    /// If a resolution is asked for with which there would be too many entries.
-    pub fn new(triangles: &Arc<Triangles>, options: GridOptions) -> Result<Self, TooFine> {
+    /// If a resolution is asked for with which there would be too many voxels or entries.
+    pub fn new(triangles: &Arc<Triangles>, options: GridOptions) -> Result<Self, GridError> {
         let outer = Grid::of_resolution(triangles, GridOptions { nested: true, ..options })?;
         let insides: Box<[Inside]> = (0..outer.list_count()).map(|_| OnceLock::new()).collect();
         let held = (outer.memory() + size_of_val(&*insides)) as u64;

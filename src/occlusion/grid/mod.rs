@@ -54,10 +54,15 @@ const MOST_ENTRIES_ASKED: u32 = 1 << 30;
 /// Most voxels along one axis.
 const MOST_VOXELS: f64 = 1024.0;
 
+/// Most voxels that may be asked for: 1 GiB before any triangle is in them, and as much again while it is built.
+const MOST_VOXELS_ASKED: u64 = 1 << 27;
+
 /// How finely the grid divides the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridOptions {
-    /// Voxels along x, y and z of the outermost grid; if none are given, what suits the triangles.
+    /// Voxels along x, y and z of the outermost grid, 1 to 1024 each and at most 2²⁷ in all; if none are given, what suits
+    /// the triangles. Each takes 4 bytes, and 8 while the grid is built, and 4 more for every triangle that lies in it:
+    /// at most 2³⁰ of these in all, which are 4 GiB.
     pub resolution: Option<[u32; 3]>,
     /// Whether crowded voxels are divided.
     pub nested: bool,
@@ -74,12 +79,27 @@ impl Default for GridOptions {
 }
 
 impl GridOptions {
-    /// A plain uniform grid of about so many voxels, as near to cubes as the box of the triangles allows.
+    /// Whether there can be a grid of the resolution that is asked for, if one is.
+    ///
+    /// # Errors
+    /// If it has no voxels along an axis, or too many.
+    pub fn check(&self) -> Result<(), GridError> {
+        let Some(resolution) = self.resolution else { return Ok(()) };
+        let is_in_range = resolution.iter().all(|n| (1..=MOST_VOXELS as u32).contains(n));
+        // Of numbers in their range the product is, too.
+        if is_in_range && resolution.map(u64::from).iter().product::<u64>() <= MOST_VOXELS_ASKED {
+            return Ok(());
+        }
+        Err(GridError::Resolution { resolution })
+    }
+
+    /// A plain uniform grid of about so many voxels, as near to cubes as the box of the triangles allows; never more than may be
+    /// asked for.
     #[must_use]
     pub fn uniform(triangles: &Triangles, voxels: usize) -> Self {
-        let bounds = triangles.bounds().unwrap_or_default();
-        let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
-        let resolution = Some(resolution(extent, voxels as f64));
+        // Half of them: what is left of a voxel at the end of each axis is one more.
+        let voxels = voxels.min(MOST_VOXELS_ASKED as usize / 2);
+        let resolution = Some(near_cubes(triangles, voxels));
         Self { resolution, nested: false, ..Self::default() }
     }
 }
@@ -97,6 +117,23 @@ pub struct TooFine {
     pub entries: u64,
 }
 
+/// Why there is no grid of the resolution that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GridError {
+    /// No voxels, or too many of them.
+    #[error(
+        "a grid of {}x{}x{} voxels: give 1 to {MOST_VOXELS} along each axis, and at most {MOST_VOXELS_ASKED} in all",
+        .resolution[0], .resolution[1], .resolution[2]
+    )]
+    Resolution {
+        /// Voxels along x, y and z.
+        resolution: [u32; 3],
+    },
+    /// Triangles lie in too many of them.
+    #[error(transparent)]
+    TooFine(#[from] TooFine),
+}
+
 /// A uniform grid over the triangles' box.
 pub struct Grid {
     level: Level,
@@ -110,30 +147,32 @@ pub struct Grid {
 
 impl Grid {
     /// Sorts the triangles into voxels, in parallel. Without triangles, it is a grid of nothing. Where there would be too
-    /// many entries, it is coarser than asked for.
+    /// many voxels or entries, it is coarser than asked for.
     #[must_use]
     pub fn new(triangles: &Triangles, options: GridOptions) -> Self {
         let mut options = options;
         loop {
             match Self::of_resolution(triangles, options) {
                 Ok(grid) => return grid,
-                Err(TooFine { resolution, .. }) => {
-                    options.resolution = Some(resolution.map(|n| n.div_ceil(2)));
-                }
+                Err(
+                    GridError::Resolution { resolution }
+                    | GridError::TooFine(TooFine { resolution, .. }),
+                ) => options.resolution = Some(resolution.map(|n| n.div_ceil(2).max(1))),
             }
         }
     }
 
-    /// The same, but a resolution that is asked for is kept.
+    /// The same, but a resolution that is asked for is kept: 4 bytes a voxel, and 8 while it is built.
     ///
     /// # Errors
-    /// If there would be too many entries.
-    pub fn of_resolution(triangles: &Triangles, options: GridOptions) -> Result<Self, TooFine> {
+    /// If there would be too many voxels or entries.
+    pub fn of_resolution(triangles: &Triangles, options: GridOptions) -> Result<Self, GridError> {
+        options.check()?;
         let density = if options.nested { NESTED_DENSITY } else { UNIFORM_DENSITY };
         match options.resolution {
             Some(_) => {
                 let level = Self::place(triangles, options.resolution, density);
-                build::build(triangles, level, MOST_ENTRIES_ASKED)
+                Ok(build::build(triangles, level, MOST_ENTRIES_ASKED)?)
             }
             None => {
                 let most = most_entries(triangles.len());
@@ -144,7 +183,7 @@ impl Grid {
                         Err(tried) => {
                             resolution = Some(tried.resolution.map(|n| n.div_ceil(2)));
                         }
-                        fits => return fits,
+                        Ok(grid) => return Ok(grid),
                     }
                 }
             }
@@ -161,8 +200,8 @@ impl Grid {
         voxels: usize,
         entries: u32,
     ) -> Result<Self, TooFine> {
-        let resolution = GridOptions::uniform(triangles, voxels).resolution;
-        let level = Self::place(triangles, resolution, UNIFORM_DENSITY);
+        let resolution = near_cubes(triangles, voxels);
+        let level = Self::place(triangles, Some(resolution), UNIFORM_DENSITY);
         build::build(triangles, level, entries.min(MOST_ENTRIES_ASKED))
     }
 
@@ -259,6 +298,12 @@ impl Walk for Grid {
 /// enough for each triangle to lie in one voxel, so a grid that is coarse enough is never refused.
 fn most_entries(triangles: usize) -> u32 {
     u32::try_from(MOST_ENTRIES.saturating_mul(triangles)).unwrap_or(u32::MAX)
+}
+
+/// Voxels along each axis of the triangles' box, about as many in all as asked for.
+fn near_cubes(triangles: &Triangles, voxels: usize) -> [u32; 3] {
+    let bounds = triangles.bounds().unwrap_or_default();
+    resolution(bounds.max.as_dvec3() - bounds.min.as_dvec3(), voxels as f64)
 }
 
 /// Voxels along each axis of a box, about as many in all as asked for.

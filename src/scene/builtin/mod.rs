@@ -58,8 +58,8 @@ pub fn draft_at(name: &str, tessellation: f64) -> Result<Draft, SceneError> {
     if !NAMES.contains(&name) {
         return Err(unknown());
     }
-    let (least, greatest) = TESSELLATION;
-    if !(least..=greatest).contains(&tessellation) {
+    if !is_in_range(tessellation) {
+        let (least, greatest) = TESSELLATION;
         return Err(SceneError::TooLarge {
             name: name.to_owned(),
             problem: format!("tessellation {tessellation} is not between {least} and {greatest}"),
@@ -88,24 +88,28 @@ fn check_memory(name: &str, triangles: u64) -> Result<(), SceneError> {
     })
 }
 
-/// How many triangles [`draft_at`] makes, without making them; `None` if no scene has that name.
+/// Whether there are scenes of that tessellation; NaN is none.
+fn is_in_range(tessellation: f64) -> bool {
+    let (least, greatest) = TESSELLATION;
+    (least..=greatest).contains(&tessellation)
+}
+
+/// How many triangles [`draft_at`] makes, without making them; `None` if no scene has that name, or the tessellation is out of
+/// its range ([`TESSELLATION`]).
 #[must_use]
 pub fn triangle_count(name: &str, tessellation: f64) -> Option<u64> {
     match name {
+        _ if !is_in_range(tessellation) => None,
         "jittered-sparse" | "jittered-dense" => Some(jittered::triangle_count(tessellation)),
         _ => description(name).map(|describe| counted(describe, density(describe, tessellation))),
     }
 }
 
 /// How far the triangles of [`draft_at`] are from the curved surfaces they stand for, in the scene's unit;
-/// `None` if no scene has that name, or its surfaces are flat.
-///
-/// # Panics
-/// If the tessellation is not positive.
+/// `None` if no scene has that name, its surfaces are flat, or the tessellation is out of its range ([`TESSELLATION`]).
 #[must_use]
 pub fn deviation(name: &str, tessellation: f64) -> Option<Deviation> {
-    assert!(tessellation > 0.0, "tessellation {tessellation} is not positive");
-    let describe = description(name)?;
+    let describe = description(name).filter(|_| is_in_range(tessellation))?;
     let mut model = Model::new("", density(describe, tessellation), Purpose::Measure);
     describe(&mut model);
     Some(model.deviation)

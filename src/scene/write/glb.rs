@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use super::{Run, material_names, runs, unwritable};
 use crate::scene::{
     Camera, Light, Material, Scene, SceneError,
+    light::{is_colour, is_exposure},
     material::{Extras, Surroundings},
 };
 use crate::whole_file::WholeFile;
@@ -22,8 +23,9 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 /// A GLB.
 ///
 /// # Errors
-/// [`SceneError::Unwritable`], also beyond the 4 GiB that a GLB holds.
+/// [`SceneError::Unwritable`], also beyond the 4 GiB that a GLB holds; [`SceneError::Unsound`].
 pub(super) fn file(scene: &Scene, path: &Path) -> Result<WholeFile, SceneError> {
+    check(scene)?;
     let mut blob = Blob::default();
     let primitives: Vec<Value> = runs(scene).iter().map(|run| blob.primitive(scene, run)).collect();
     let mut nodes = vec![
@@ -83,6 +85,33 @@ pub(super) fn file(scene: &Scene, path: &Path) -> Result<WholeFile, SceneError> 
         Ok(())
     })?;
     Ok(file)
+}
+
+/// Refuses numbers that cannot be read back: JSON has no infinity and no NaN.
+fn check(scene: &Scene) -> Result<(), SceneError> {
+    let unsound = |what: &str, advice: &str| SceneError::Unsound {
+        name: scene.name.clone(),
+        problem: format!("the numbers of {what} make no sense; {advice}"),
+    };
+    let advice = "give others, or take it out";
+    if let Some(index) = scene.lights.iter().position(|light| !light.is_sound()) {
+        return Err(unsound(&format!("light {index}"), advice));
+    }
+    // Not whether it is sound: of a scene near the end of f32, the camera that was chosen may lie beyond it.
+    let Camera { position, right, up, forward, field_of_view } = scene.camera;
+    if ![position, right, up, forward].iter().all(|v| v.is_finite()) || !field_of_view.is_finite() {
+        return Err(unsound("the camera", "give it finite ones"));
+    }
+    if !is_colour(&scene.ambient) || !is_colour(&scene.background) {
+        return Err(unsound("the ambient light or the background", "give numbers from 0 up"));
+    }
+    if scene.exposure.is_some_and(|factor| !is_exposure(factor)) {
+        return Err(unsound("the exposure", "give a number above 0, or none"));
+    }
+    match scene.materials.iter().position(|material| *material != material.clamped()) {
+        None => Ok(()),
+        Some(index) => Err(unsound(&format!("material {index}"), "give others")),
+    }
 }
 
 /// The binary chunk and what the JSON says about it.

@@ -11,10 +11,14 @@ use glam::Vec3;
 use super::{Scene, SceneError};
 use crate::whole_file::{WholeFile, finish_all};
 
-/// Writes a scene as the end of the name says: `.obj` (with an `.mtl` beside it) or `.glb`.
+/// Writes a scene as the end of the name says: `.obj` (with an `.mtl` beside it) or `.glb`, in world coordinates.
+///
+/// A GLB keeps everything but notes. OBJ has no place for lights, camera, ambient light, background and exposure:
+/// they are not written, and whoever loads the file gets others.
 ///
 /// # Errors
-/// [`SceneError::Unwritable`], also for any other name; nothing is written then.
+/// [`SceneError::UnknownKind`] for any other name, [`SceneError::Unsound`] if a GLB would hold a light, a camera or
+/// surroundings whose numbers make no sense, [`SceneError::Unwritable`]; nothing is written then.
 pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
     Ok(finish_all(files(scene, path)?)?)
 }
@@ -22,13 +26,13 @@ pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
 /// The files of [`write()`], whole but not in their places yet.
 ///
 /// # Errors
-/// [`SceneError::Unwritable`], also for any other name.
+/// Those of [`write()`].
 pub fn files(scene: &Scene, path: &Path) -> Result<Vec<WholeFile>, SceneError> {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     match extension.to_str() {
         Some("obj") => obj::files(scene, path),
         Some("glb") => Ok(vec![glb::file(scene, path)?]),
-        _ => Err(unwritable(path)(io::Error::other("scenes are written as .obj or .glb"))),
+        _ => Err(SceneError::UnknownKind { path: path.into() }),
     }
 }
 

@@ -119,6 +119,11 @@ impl<'a> Auto<'a> {
         self
     }
 
+    /// Whom it may ask.
+    pub(super) fn candidates(&self) -> impl Iterator<Item = String> {
+        self.candidates.iter().map(|candidate| candidate.combination.to_string())
+    }
+
     /// Whether something that is not prepared yet may be worth it soon.
     fn waits(&self) -> bool {
         self.candidates.iter().any(|candidate| candidate.prepared.get().is_none())
