@@ -123,7 +123,10 @@ fn sizes_samples_and_depths() {
         render_refused(&format!("--threads {threads}"), &["--threads", threads, "1 to 1024"]);
     }
     render_refused("--grid 0,1,1", &["--grid", "1 to 1024"]);
-    render_refused("--grid 1024,1024,1024", &["--grid", "1073741824 voxels are too many"]);
+    render_refused(
+        "--grid 1024,1024,1024",
+        &["--grid", "1024x1024x1024 voxels", "at most 134217728"],
+    );
     let line = "render drum -o new.png --tree-depth 32";
     refused(workplace().path(), line, &["--tree-depth", "32", "0 to 31"]);
     let line = "paper --quick --scene drum --every 0";

@@ -22,9 +22,6 @@ use crate::shadow::Combination;
 /// Reflections and refractions at most: as many as the table of a ray's path holds.
 pub(super) const MOST_DEPTH: u8 = crate::shadow::Path::MAX_LEVEL;
 
-/// Voxels of a grid at most: 2 GiB before any triangle is in them.
-const MOST_VOXELS: u64 = 1 << 27;
-
 /// Threads at most: more than any machine has processors.
 pub(super) const MOST_THREADS: usize = 1024;
 
@@ -116,14 +113,12 @@ impl MemoryLimit {
 pub(super) fn parse_resolution(text: &str) -> Result<[u32; 3], String> {
     let parts: Vec<u32> = text
         .split(',')
-        .map(|part| part.trim().parse().ok().filter(|n| (1..=1024).contains(n)))
+        .map(|part| part.trim().parse().ok())
         .collect::<Option<_>>()
-        .ok_or("give three whole numbers from 1 to 1024, like 64,64,32")?;
+        .ok_or("give three whole numbers, like 64,64,32")?;
     let parts: [u32; 3] = parts.try_into().map_err(|_| "give three numbers, like 64,64,32")?;
-    let voxels: u64 = parts.iter().map(|&n| u64::from(n)).product();
-    if voxels > MOST_VOXELS {
-        return Err(format!("{voxels} voxels are too many; give at most {MOST_VOXELS} in all"));
-    }
+    let options = GridOptions { resolution: Some(parts), ..GridOptions::default() };
+    options.check().map_err(|error| error.to_string())?;
     Ok(parts)
 }
 
