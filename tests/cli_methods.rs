@@ -209,13 +209,13 @@ fn a_limit_that_an_engine_cannot_keep_is_refused_with_one_that_it_can() {
     for (arguments, told) in [
         ("--memory 0", "--memory 0: over this scene grid takes more; give 1M or more"),
         ("--memory 512", "(512 without a unit are bytes: did you mean 512M?)"),
-        ("--memory 1.5 --backend bvh2", "over this scene bvh2 takes more; give "),
+        ("--memory 2.5 --backend bvh2", "over this scene bvh2 takes more; give "),
         ("--memory 100k --backend cwbvh", "--memory 100k: over this scene cwbvh takes more; give "),
     ] {
         let line = format!("render chair-room -o out.png --size 16x12 {arguments}");
         refused(folder.path(), &line, &[told]);
         let said = said(&run(folder.path(), &line));
-        let is_bare = arguments.contains("512") || arguments.contains("1.5");
+        let is_bare = arguments.contains("512") || arguments.contains("2.5");
         assert_eq!(said.contains("did you mean"), is_bare, "{said}");
         let least = said.split("give ").nth(1).unwrap().split(' ').next().unwrap();
         let [option, _, engine @ ..] = &arguments.split(' ').collect::<Vec<_>>()[..] else {

@@ -22,7 +22,8 @@ impl Brute {
 
 impl Walk for Brute {
     const INLINED: bool = false;
-    const CULLS: bool = false;
+    // The measure of all others has nothing in common with them.
+    const APART: bool = false;
 
     #[inline(always)]
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, _: &Ray, visitor: &mut V) {

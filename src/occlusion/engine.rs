@@ -33,7 +33,7 @@ impl<W: Walk, T: TriangleTest> Engine<W, T> {
     pub fn new(triangles: Arc<Triangles>, walk: W, arithmetic: Option<Arithmetic>) -> Self {
         let arithmetic = arithmetic.unwrap_or_else(Arithmetic::of_this_cpu);
         assert!(arithmetic.is_available(), "this CPU has no {} arithmetic", arithmetic.name());
-        let transparent = W::CULLS.then(|| among_transparent(&triangles)).flatten();
+        let transparent = W::APART.then(|| among_transparent(&triangles)).flatten();
         Self { triangles, walk, transparent, arithmetic, test: PhantomData }
     }
 

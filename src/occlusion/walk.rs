@@ -57,9 +57,8 @@ pub trait Walk: Send + Sync + 'static {
     /// every operation of a test would be a call: then tests may be done in place.
     const IN_PLACE: bool = false;
 
-    /// Whether it rules anything out by itself. Then transparent triangles, where they are the lesser part, are looked for in a grid of
-    /// their own.
-    const CULLS: bool = true;
+    /// Whether transparent triangles, where they are the lesser part, are looked for in a grid of their own.
+    const APART: bool = true;
 
     /// Visits what the ray might meet, nearer parts mostly first; lanes of whatever kind serve the culling.
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V);
@@ -84,7 +83,7 @@ pub trait Walk: Send + Sync + 'static {
 impl<W: Walk> Walk for Arc<W> {
     const INLINED: bool = false;
     // Whoever shares a culler asks about what is opaque.
-    const CULLS: bool = false;
+    const APART: bool = false;
 
     #[inline(always)]
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {

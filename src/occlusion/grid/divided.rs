@@ -131,6 +131,9 @@ fn bytes_of(grid: &NestedGrid) -> usize {
 }
 
 impl Walk for DividedGrid {
+    // What is not asked is not divided.
+    const APART: bool = false;
+
     #[inline(always)]
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
         let (enter, leave) = match self.outer.clip(ray) {

@@ -264,6 +264,9 @@ impl Grid {
 }
 
 impl Walk for Grid {
+    // It is there to be the only grid, and to become as small as a memory limit asks.
+    const APART: bool = false;
+
     #[inline(always)]
     fn walk<L: Lanes, V: Visit + ?Sized>(&self, ray: &Ray, visitor: &mut V) {
         let (enter, leave) = match self.clip(ray) {
