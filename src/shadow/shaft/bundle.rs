@@ -127,9 +127,7 @@ pub(super) struct Bundle {
     pub open: [u16; PACKETS],
     /// A bit a packet that has such.
     open_packets: u16,
-    /// Whether all that queries meet is wanted; then none is ever closed.
-    pub wants_all: bool,
-    /// What they meet then: queries, and the triangle.
+    /// If all that queries meet is wanted: queries, and the triangle.
     met: Vec<(u16, TriangleId)>,
     /// Largest coordinate of origins and light or, towards a direction, of all that is there, and of the centre: in magnitude.
     pub largest: f32,
@@ -149,7 +147,6 @@ impl Bundle {
             asked: [0; PACKETS],
             open: [0; PACKETS],
             open_packets: 0,
-            wants_all: false,
             met: Vec::new(),
             largest: 0.0,
         }
@@ -311,12 +308,19 @@ impl Bundle {
         self.open_packets & PACKETS_OF[part] != 0
     }
 
-    /// Notes that a triangle blocks queries of a packet.
+    /// Notes that queries of a packet meet a triangle: they are blocked, or if all that they meet is wanted, stay open.
     #[inline(always)]
-    pub fn block(&mut self, packet: usize, blocked: u16, triangle: TriangleId) {
-        if self.wants_all {
-            return self.note(packet, blocked & self.open[packet], triangle);
+    pub fn meet<const ALL: bool>(&mut self, packet: usize, meet: u16, triangle: TriangleId) {
+        if ALL {
+            self.note(packet, meet & self.open[packet], triangle);
+        } else {
+            self.block(packet, meet);
         }
+    }
+
+    /// Notes that queries of a packet are blocked.
+    #[inline(always)]
+    pub fn block(&mut self, packet: usize, blocked: u16) {
         self.open[packet] &= !blocked;
         if self.open[packet] == 0 {
             self.open_packets &= !(1 << packet);
@@ -325,10 +329,10 @@ impl Bundle {
 
     /// Keeps it in mind that queries of a packet meet a triangle.
     #[inline(never)]
-    fn note(&mut self, packet: usize, mut blocked: u16, triangle: TriangleId) {
-        while blocked != 0 {
-            let query = packet as u16 * PACKET as u16 + blocked.trailing_zeros() as u16;
-            blocked &= blocked - 1;
+    fn note(&mut self, packet: usize, mut meet: u16, triangle: TriangleId) {
+        while meet != 0 {
+            let query = packet as u16 * PACKET as u16 + meet.trailing_zeros() as u16;
+            meet &= meet - 1;
             self.met.push((query, triangle));
         }
     }

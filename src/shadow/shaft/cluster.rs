@@ -27,51 +27,55 @@ pub(super) struct Tests<'a, 'b> {
 impl Tests<'_, '_> {
     /// Tests the triangles of a cluster for a part of the bundle that has several packets.
     #[inline(always)]
-    pub fn part<L: Lanes>(self, part: usize, number: u32) {
+    pub fn part<L: Lanes, const ALL: bool>(self, part: usize, number: u32) {
         let Self { bundle, kept, ground, around, tally } = self;
         let mut shadows = Shadows::on::<L>(bundle, part, kept, ground, around, number);
         while let Some(shadow) = shadows.next::<L::Sixteen>() {
-            cast(bundle, part, &shadow, ground, around, tally);
+            cast::<_, ALL>(bundle, part, &shadow, ground, around, tally);
         }
     }
 
     /// Tests them for some rays of a packet.
     #[inline(always)]
-    pub fn packet<L: Lanes>(self, packet: usize, rays: u16, number: u32) {
+    pub fn packet<L: Lanes, const ALL: bool>(self, packet: usize, rays: u16, number: u32) {
         let Self { bundle, kept, ground, around, tally } = self;
         let part = PACKETS + packet;
         let mut shadows = Shadows::on::<L>(bundle, part, kept, ground, around, number);
         while let Some(shadow) = shadows.next::<L::Sixteen>() {
-            cast_on(bundle, packet, rays, &shadow, around, tally);
+            cast_on::<_, ALL>(bundle, packet, rays, &shadow, around, tally);
         }
     }
 
     /// Tests them for few rays of a packet, one by one.
     #[inline(always)]
-    pub fn few<L: Lanes>(self, packet: usize, mut rays: u16, number: u32) {
+    pub fn few<L: Lanes, const ALL: bool>(self, packet: usize, mut rays: u16, number: u32) {
         let Self { bundle, kept, ground, around, tally } = self;
         tally.triangle_tests += WIDTH as u64 * u64::from(rays.count_ones());
         let cluster = &around.clusters.all()[number as usize];
         let planes = kept.of::<L>(ground, number, cluster);
+        let mut blocked = 0;
         while rays != 0 {
             let lane = rays.trailing_zeros() as usize;
             rays &= rays - 1;
             let [x, y, z] = &bundle.origins[packet];
             let origin = Vec3::new(x.0[lane], y.0[lane], z.0[lane]);
-            let (certain, doubtful) = planes.cast_on_one::<L>(origin);
-            // Certain ones first: any will do, unless all are wanted.
-            'triangles: for (mut triangles, is_certain) in [(certain, true), (doubtful, false)] {
-                while triangles != 0 {
-                    let triangle = cluster.ids()[triangles.trailing_zeros() as usize];
-                    triangles &= triangles - 1;
-                    if is_certain || settle(packet * PACKET + lane, triangle, around) {
-                        bundle.block(packet, 1 << lane, triangle);
-                        if !bundle.wants_all {
-                            break 'triangles;
-                        }
-                    }
-                }
+            let (mut certain, mut doubtful) = planes.cast_on_one::<L>(origin);
+            // Any will do, unless all are wanted.
+            while doubtful != 0 && (ALL || certain == 0) {
+                let place = doubtful.trailing_zeros();
+                doubtful &= doubtful - 1;
+                let meets = settle(packet * PACKET + lane, cluster.ids()[place as usize], around);
+                certain |= u32::from(meets) << place;
             }
+            blocked |= u16::from(certain != 0) << lane;
+            while ALL && certain != 0 {
+                let triangle = cluster.ids()[certain.trailing_zeros() as usize];
+                certain &= certain - 1;
+                bundle.meet::<ALL>(packet, 1 << lane, triangle);
+            }
+        }
+        if !ALL {
+            bundle.block(packet, blocked);
         }
     }
 }
@@ -115,7 +119,7 @@ impl<'a> Shadows<'a> {
 
 /// Casts the shadow of one triangle on a part of the bundle.
 #[inline(always)]
-fn cast<S: Sixteen>(
+fn cast<S: Sixteen, const ALL: bool>(
     bundle: &mut Bundle,
     part: usize,
     shadow: &Shadow<S>,
@@ -127,7 +131,7 @@ fn cast<S: Sixteen>(
     // Without a side the signs of planes say nothing by themselves.
     if shadow.unsided || last - first < WORTH_JUDGING {
         for packet in first..last {
-            cast_on(bundle, packet, u16::MAX, shadow, around, tally);
+            cast_on::<S, ALL>(bundle, packet, u16::MAX, shadow, around, tally);
         }
         return;
     }
@@ -137,16 +141,16 @@ fn cast<S: Sixteen>(
         let packet = touched.trailing_zeros() as usize;
         touched &= touched - 1;
         if covered & (1 << packet) != 0 {
-            bundle.block(packet, u16::MAX, shadow.triangle);
+            bundle.meet::<ALL>(packet, u16::MAX, shadow.triangle);
         } else {
-            cast_on(bundle, packet, u16::MAX, shadow, around, tally);
+            cast_on::<S, ALL>(bundle, packet, u16::MAX, shadow, around, tally);
         }
     }
 }
 
 /// Casts it on some queries of a packet.
 #[inline(always)]
-fn cast_on<S: Sixteen>(
+fn cast_on<S: Sixteen, const ALL: bool>(
     bundle: &mut Bundle,
     packet: usize,
     rays: u16,
@@ -167,7 +171,7 @@ fn cast_on<S: Sixteen>(
             blocked |= 1 << query;
         }
     }
-    bundle.block(packet, blocked, shadow.triangle);
+    bundle.meet::<ALL>(packet, blocked, shadow.triangle);
 }
 
 /// Decides one triangle for one query.

@@ -112,7 +112,6 @@ impl Shafts {
         mut told: Told<'_>,
         tally: &mut Tally,
     ) {
-        walker.bundle.wants_all = matches!(told, Told::Met(_));
         let source = &self.sources[light];
         let mut columns = std::mem::take(&mut walker.columns);
         let mut order = std::mem::take(&mut walker.order);
@@ -120,10 +119,16 @@ impl Shafts {
         let mut walk = |places, leaves_spread| {
             let queries = Chosen::new(queries, &columns, places);
             let around = Around { clusters, triangles: &self.triangles, queries, leaves_spread };
-            if self.arithmetic.run(Walk { walker, source, around, tally }) {
-                match &mut told {
-                    Told::Blocked(settled) => walker.bundle.tell(places, settled),
-                    Told::Met(panes) => walker.bundle.tell_all(places, panes),
+            match &mut told {
+                Told::Blocked(settled) => {
+                    if self.arithmetic.run(Walk::<false> { walker, source, around, tally }) {
+                        walker.bundle.tell(places, settled);
+                    }
+                }
+                Told::Met(panes) => {
+                    if self.arithmetic.run(Walk::<true> { walker, source, around, tally }) {
+                        walker.bundle.tell_all(places, panes);
+                    }
                 }
             }
         };
@@ -207,19 +212,19 @@ impl Glass for Shafts {
     }
 }
 
-struct Walk<'a, 'b> {
+struct Walk<'a, 'b, const ALL: bool> {
     walker: &'a mut Walker,
     source: &'a Source,
     around: Around<'b>,
     tally: &'a mut Tally,
 }
 
-impl LanesJob for Walk<'_, '_> {
+impl<const ALL: bool> LanesJob for Walk<'_, '_, ALL> {
     type Answer = bool;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> bool {
-        self.walker.walk::<L>(self.source, &self.around, self.tally)
+        self.walker.walk::<L, ALL>(self.source, &self.around, self.tally)
     }
 }
 

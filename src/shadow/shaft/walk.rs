@@ -82,9 +82,15 @@ impl Walker {
         self.bundle.ground = None;
     }
 
-    /// Settles all queries to this light: those that stay open are lit. `false` if none is settled.
+    /// Settles all queries to this light: those that stay open are lit, or with `ALL`, all that they meet is noted. `false` if none
+    /// is settled. `ALL` is no field, lest every test of what is opaque looks at it.
     #[inline(always)]
-    pub fn walk<L: Lanes>(&mut self, source: &Source, around: &Around, tally: &mut Tally) -> bool {
+    pub fn walk<L: Lanes, const ALL: bool>(
+        &mut self,
+        source: &Source,
+        around: &Around,
+        tally: &mut Tally,
+    ) -> bool {
         let Around { triangles, queries, .. } = around;
         let Some(ground) = &self.bundle.fill::<L>(source, queries, triangles) else { return false };
         if around.leaves_spread && self.bundle.is_spread(around.clusters.typical_extent()) {
@@ -99,7 +105,7 @@ impl Walker {
         }
         if around.queries.count() < COMPANY as usize {
             let asked = self.bundle.open[0];
-            self.go_alone::<L>(0, asked, 0, around, tally);
+            self.go_alone::<L, ALL>(0, asked, 0, around, tally);
             return true;
         }
         self.steps.push(Step { part: 1, met: u16::MAX, node: 0 });
@@ -113,9 +119,9 @@ impl Walker {
             self.know(index, ground);
             let found = self.shafts[index].meets::<L>(node);
             if index < PACKETS {
-                self.send_part::<L>(step, &found, node, ground, around, tally);
+                self.send_part::<L, ALL>(step, &found, node, ground, around, tally);
             } else {
-                self.send_packet::<L>(step, &found, node, ground, around, tally);
+                self.send_packet::<L, ALL>(step, &found, node, ground, around, tally);
             }
         }
         true
@@ -158,7 +164,7 @@ impl Walker {
     /// Sends a part to the boxes of a node that its shaft meets, or its halves back to the node, if the part
     /// is wider than most of them.
     #[inline(always)]
-    fn send_part<L: Lanes>(
+    fn send_part<L: Lanes, const ALL: bool>(
         &mut self,
         step: Step,
         found: &Met,
@@ -182,13 +188,13 @@ impl Walker {
         while clusters != 0 {
             let slot = clusters.trailing_zeros() as usize;
             clusters &= clusters - 1;
-            self.tests(ground, around, tally).part::<L>(step.part.into(), node.number(slot));
+            self.tests(ground, around, tally).part::<L, ALL>(step.part.into(), node.number(slot));
         }
     }
 
     /// Sends the rays of a packet to the boxes of a node that they meet; alone where they are few.
     #[inline(always)]
-    fn send_packet<L: Lanes>(
+    fn send_packet<L: Lanes, const ALL: bool>(
         &mut self,
         step: Step,
         found: &Met,
@@ -213,22 +219,24 @@ impl Walker {
             match (child, rays.count_ones()) {
                 (_, 0) => {}
                 (Child::Cluster(number), COMPANY..) => {
-                    self.tests(ground, around, tally).packet::<L>(packet, rays, number);
+                    self.tests(ground, around, tally).packet::<L, ALL>(packet, rays, number);
                 }
                 (Child::Cluster(number), _) => {
-                    self.tests(ground, around, tally).few::<L>(packet, rays, number);
+                    self.tests(ground, around, tally).few::<L, ALL>(packet, rays, number);
                 }
                 (Child::Node(node), COMPANY..) => {
                     self.steps.push(Step { met: rays, node, ..step });
                 }
-                (Child::Node(node), _) => self.go_alone::<L>(packet, rays, node, around, tally),
+                (Child::Node(node), _) => {
+                    self.go_alone::<L, ALL>(packet, rays, node, around, tally)
+                }
             }
         }
     }
 
     /// Has rays of a packet visit a node one by one.
     #[inline(always)]
-    fn go_alone<L: Lanes>(
+    fn go_alone<L: Lanes, const ALL: bool>(
         &mut self,
         packet: usize,
         mut rays: u16,
@@ -256,8 +264,8 @@ impl Walker {
                     tally.triangle_tests += WIDTH as u64;
                     let cluster = &around.clusters.all()[node.number(slot) as usize];
                     let hit = |triangle| {
-                        self.bundle.block(packet, 1 << lane, triangle);
-                        if self.bundle.wants_all { Continue(()) } else { Break(()) }
+                        self.bundle.meet::<ALL>(packet, 1 << lane, triangle);
+                        if ALL { Continue(()) } else { Break(()) }
                     };
                     let tests = cluster.test_each::<Exact, L>(ray, &lanes, around.triangles, hit);
                     if tests.is_break() {
