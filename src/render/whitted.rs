@@ -273,7 +273,7 @@ impl<'a> Unit<'a> {
         if transparent {
             self.look_for_glass(light);
         }
-        let mut lit = 0..;
+        let mut lit = 0;
         let about = self.about.iter().zip(&self.answers);
         for (asked, (&(index, illumination), answer)) in about.enumerate() {
             let query = &self.asked[asked];
@@ -303,7 +303,9 @@ impl<'a> Unit<'a> {
             }
             let mut radiance =
                 vertex.surface.shade(self.scene.material(vertex.triangle), &illumination);
-            if transparent && let Some(place) = lit.next() {
+            if transparent {
+                let place = lit;
+                lit += 1;
                 let spawner = self.leaves_out_spawner.then_some(query.spawner);
                 let before = work(&self.attenuation.tally);
                 let Self { scene, backend, .. } = *self;
@@ -319,10 +321,11 @@ impl<'a> Unit<'a> {
 
     /// Finds what is transparent before the light, for queries that are not blocked.
     fn look_for_glass(&mut self, light: usize) {
+        let Some(glass) = self.glass else { return };
         let asked = self.asked.iter().zip(&self.answers);
         self.lit.clear();
         self.lit.extend(asked.filter(|(_, answer)| !answer.blocked).map(|(query, _)| *query));
-        self.attenuation.prepare(self.glass, light, &self.lit);
+        self.attenuation.prepare(glass, light, &self.lit);
     }
 
     /// Has the queries answered; one by one, noting what each costs, if they are to be shown.

@@ -29,8 +29,8 @@ impl Budget {
         Self { left: AtomicU64::new(bytes), all: bytes, backend: 0 }
     }
 
-    /// What a limit leaves beside a backend, which may be a coarser one than that of `wanted` bytes. Without a limit, what Embree would take over the scene, and no more than is
-    /// left of the machine's share.
+    /// What a limit leaves beside a backend, which may be a coarser one than that of `wanted` bytes. Without a limit, what
+    /// Embree would take over the scene, and no more than is left of the machine's share.
     #[must_use]
     pub fn beside(backend: &dyn Occlusion, wanted: u64, scene: &Scene, limit: Option<u64>) -> Self {
         let backend = backend.memory() as u64;

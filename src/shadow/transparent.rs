@@ -56,15 +56,17 @@ impl Panes {
         *first = self.met.len() as u32 - 1;
     }
 
-    /// What a query meets, in no order, a triangle perhaps more than once; `None` if it is not answered.
+    /// What a query meets, in no order, a triangle perhaps more than once; `None` if it is not answered, or not among them.
     pub fn of(&self, query: usize) -> Option<impl Iterator<Item = TriangleId>> {
-        let mut next = self.firsts[query];
-        let met = std::iter::from_fn(move || {
+        let mut next = *self.firsts.get(query)?;
+        if next == Self::UNKNOWN {
+            return None;
+        }
+        Some(std::iter::from_fn(move || {
             let &(triangle, following) = self.met.get(next as usize)?;
             next = following;
             Some(triangle)
-        });
-        (self.firsts[query] != Self::UNKNOWN).then_some(met)
+        }))
     }
 }
 
@@ -78,16 +80,14 @@ pub struct Attenuation {
 }
 
 impl Attenuation {
-    /// Prepares for some queries towards one light, which no opaque triangle blocks: what they meet is found at once, if somebody can.
-    pub fn prepare(&mut self, glass: Option<&dyn Glass>, light: usize, queries: &[ShadowQuery]) {
+    /// Prepares for some queries towards one light, which no opaque triangle blocks: what they meet is found at once.
+    pub fn prepare(&mut self, glass: &dyn Glass, light: usize, queries: &[ShadowQuery]) {
         self.panes.begin(queries.len());
-        if let Some(glass) = glass {
-            glass.find(light, queries, &mut self.panes, &mut self.tally);
-        }
+        glass.find(light, queries, &mut self.panes, &mut self.tally);
     }
 
     /// The share of light, by colour, that passes all transparent triangles on the ray of one of the queries that it was prepared for, by
-    /// its place among them; `spawner` does not count, if one is named.
+    /// its place among them, or on any ray if it was not; `spawner` does not count, if one is named.
     pub fn transmittance(
         &mut self,
         scene: &Scene,

@@ -62,11 +62,15 @@ impl Embree {
         coherent: bool,
     ) -> Result<Self, embree_ffi::Error> {
         build::check_width(&self.scene, width)?;
-        let (triangles, scene) = (self.triangles.clone(), self.scene.clone());
-        let (transparent, firsts) = (self.transparent.clone(), self.firsts.clone());
-        let (options, companion) =
-            (EmbreeOptions { width, coherent, ..self.options }, self.companion.clone());
-        Ok(Self { triangles, scene, transparent, firsts, options, companion, ..*self })
+        Ok(Self {
+            triangles: self.triangles.clone(),
+            scene: self.scene.clone(),
+            transparent: self.transparent.clone(),
+            firsts: self.firsts.clone(),
+            options: EmbreeOptions { width, coherent, ..self.options },
+            companion: self.companion.clone(),
+            ..*self
+        })
     }
 
     fn ray(ray: &Ray, mask: NonZeroU32) -> EmbreeRay {
@@ -164,17 +168,12 @@ impl Occlusion for Embree {
         {
             return;
         }
-        let ray = Self::ray(ray, TRANSPARENT);
-        match &self.transparent {
-            Some(scene) => scene.occluded_with(&ray, |hit| {
-                found.push(self.triangles.opaque_count() + hit.primitive);
-                Verdict::Reject
-            }),
-            None => self.scene.occluded_with(&ray, |hit| {
-                found.push(self.triangle(hit));
-                Verdict::Reject
-            }),
-        };
+        let scene = self.transparent.as_ref().unwrap_or(&self.scene);
+        scene.occluded_with(&Self::ray(ray, TRANSPARENT), |hit| {
+            // In either scene they are a geometry by themselves.
+            found.push(self.triangles.opaque_count() + hit.primitive);
+            Verdict::Reject
+        });
         found.sort_unstable();
         found.dedup();
     }
