@@ -32,6 +32,18 @@ impl Backend {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Grid, Self::Embree, Self::Bvh2, Self::Cwbvh, Self::Brute];
 
+    /// Whether this umbra was built with it.
+    #[must_use]
+    pub fn is_built_in(self) -> bool {
+        self != Self::Embree || cfg!(feature = "embree")
+    }
+
+    /// Whether it can decide by a test: Embree has those of its own only.
+    #[must_use]
+    pub fn has(self, test: Test) -> bool {
+        self != Self::Embree || matches!(test, Test::Pluecker | Test::Moller)
+    }
+
     /// The test it uses where nothing else is asked for: the exact one where it can.
     #[must_use]
     pub fn default_test(self) -> Test {
@@ -201,11 +213,10 @@ fn embree(
     triangles: &Arc<Triangles>,
     options: &BuildOptions,
 ) -> Result<Box<dyn Occlusion>, BackendError> {
-    let robust = match test {
-        Test::Pluecker => true,
-        Test::Moller => false,
-        other => return Err(BackendError::NotInEmbree(other)),
-    };
+    if !Backend::Embree.has(test) {
+        return Err(BackendError::NotInEmbree(test));
+    }
+    let robust = test == Test::Pluecker;
     Ok(Box::new(super::Embree::new(triangles.clone(), robust, options.embree)?))
 }
 
