@@ -125,7 +125,7 @@ impl FromStr for Test {
 pub struct BuildOptions {
     /// How finely the grid divides the scene.
     pub grid: GridOptions,
-    /// The arithmetic of the triangle tests; that of this CPU if none is named.
+    /// The arithmetic of the triangle tests, which this CPU must have; its newest if none is named. Embree has its own.
     pub arithmetic: Option<Arithmetic>,
     /// How Embree is used.
     #[cfg(feature = "embree")]
@@ -147,6 +147,9 @@ pub enum BackendError {
     /// The grid cannot be as fine as was asked for.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// This CPU lacks the arithmetic that was asked for.
+    #[error("this CPU has no {} arithmetic; leave it to umbra, which takes the newest there is", .0.name())]
+    Arithmetic(Arithmetic),
     /// Embree decides by its own arithmetic.
     #[error(
         "embree has no test '{0}': its own are pluecker (robust mode) and moller (default mode)"
@@ -176,13 +179,17 @@ pub enum BackendError {
 /// ```
 ///
 /// # Errors
-/// If the backend is not to be had here, or not as fine.
+/// If the backend or the arithmetic is not to be had here, or the grid not as fine.
 pub fn build(
     backend: Backend,
     test: Test,
     triangles: &Arc<Triangles>,
     options: &BuildOptions,
 ) -> Result<Box<dyn Occlusion>, BackendError> {
+    let own = backend != Backend::Embree;
+    if let Some(arithmetic) = options.arithmetic.filter(|one| own && !one.is_available()) {
+        return Err(BackendError::Arithmetic(arithmetic));
+    }
     Ok(match backend {
         Backend::Grid => grid(test, triangles, options)?,
         Backend::Bvh2 => engine(test, triangles, Bvh2::new(triangles), options),

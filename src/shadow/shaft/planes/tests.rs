@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::super::strategies::point;
 use super::*;
 use crate::exact::certified;
-use crate::geometry::lanes::{Arithmetic, LanesJob};
+use crate::geometry::lanes::{Available, LanesJob};
 use crate::geometry::{Ray, Triangle, Triangles};
 use crate::occlusion::Clusters;
 
@@ -55,7 +55,7 @@ fn ray(source: &Source, origin: Vec3) -> Ray {
 /// How many answers are left open; all others must be right.
 fn open(source: Source, triangles: &[Triangle], origins: &[Vec3]) -> usize {
     let mut all = 0;
-    for arithmetic in Arithmetic::available() {
+    for arithmetic in Available::all() {
         let said = arithmetic.run(Case { source, triangles, origins });
         for (origin, (certain, open)) in origins.iter().zip(said) {
             for (id, triangle) in triangles.iter().enumerate() {
