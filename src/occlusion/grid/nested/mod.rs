@@ -44,7 +44,7 @@ use group::{GROUP, Group};
 
 use crate::geometry::lanes::Lanes;
 use crate::geometry::{Bounds, Ray, TriangleId, Triangles};
-use crate::occlusion::clip::{Clip, clip};
+use crate::occlusion::clip::{Clip, LEAST_EXTENT, clip};
 use crate::occlusion::{Cell, Eight, Visit, VisitMany, Walk};
 
 /// How far from its place the walk may take a point to be; see the table above.
@@ -94,11 +94,9 @@ struct Cube {
 impl Cube {
     /// The cube over what is in a box; what a test may err by is that of the whole scene.
     fn over(bounds: Option<Bounds>, slack: f64) -> Self {
-        /// A scene that is one point has some side too.
-        const LEAST: f64 = 1e-60;
         let bounds = bounds.unwrap_or_default();
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        let side = (max - min).max_element().max(slack).max(LEAST);
+        let side = (max - min).max_element().max(slack).max(LEAST_EXTENT);
         let scale = side.recip();
         // Rounded up: what is a little wider loses nothing.
         let padding = MISPLACED + (slack * scale * (1.0 + f64::from(f32::EPSILON))) as f32;
