@@ -107,7 +107,7 @@ impl GridOptions {
 /// A grid of this resolution would have too many entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a grid of {}x{}x{} voxels would list triangles some {entries} times, which is more than {MOST_ENTRIES_ASKED}; give --grid fewer voxels",
+    "a grid of {}x{}x{} voxels would list triangles some {entries} times, which is more than {most}; give --grid fewer voxels",
     .resolution[0], .resolution[1], .resolution[2]
 )]
 pub struct TooFine {
@@ -119,6 +119,8 @@ pub struct TooFine {
 
 /// Why there is no grid of the resolution that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+    /// Entries that there may be.
+    pub most: u32,
 pub enum GridError {
     /// No voxels, or too many of them.
     #[error(
