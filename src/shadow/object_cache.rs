@@ -30,6 +30,8 @@ impl Default for LastOccluder {
     }
 }
 
+    const NEEDS_CELLS: bool = false;
+
 impl Memory for LastOccluder {
     type Shared = ();
 

@@ -36,6 +36,8 @@ impl Default for LastVoxel {
 
 impl Memory for LastVoxel {
     type Shared = ();
+    const NEEDS_CELLS: bool = true;
+
 
     #[inline(always)]
     fn recall<I: Inquiry>(

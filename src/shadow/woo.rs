@@ -62,6 +62,8 @@ pub struct LastCell {
 
 impl Memory for LastCell {
     type Shared = Fronts;
+    const NEEDS_CELLS: bool = true;
+
 
     #[inline(always)]
     fn recall<I: Inquiry>(
