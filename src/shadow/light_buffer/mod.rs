@@ -4,7 +4,7 @@
 //! nothing is traversed.
 //!
 //! Wins where many queries go to a light: a query tests the few clusters that its cell shows, with one
-//! vector test each, and it is the one method here that proves points *lit*. Costs a structure a
+//! vector test each, and if none of them blocks it is proven lit. Costs a structure a
 //! light; so blocks of cells are made when a query first asks them, and nothing for directions that no
 //! query comes from. Lists hold clusters of eight triangles (`occlusion::clusters`), and sixteen bits an entry say
 //! in which sixteenths of the cell the cluster is seen at all. Where one triangle covers a whole cell, all queries

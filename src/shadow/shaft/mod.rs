@@ -15,7 +15,7 @@
 //! Exact: a query is settled by a plane that is certain by more than its error bound (`planes`), else by the
 //! exact test. Rays that are not to their light, bit for bit, are passed on.
 //!
-//! Haines, Wallace: Shaft Culling for Efficient Ray-Traced Radiosity. Eurographics Workshop on Rendering 1991.
+//! Haines, Wallace: Shaft Culling for Efficient Ray-Cast Radiosity. Eurographics Workshop on Rendering 1991.
 //! Dmitriev, Havran, Seidel: Faster Ray Tracing with SIMD Shaft Culling. MPI-I-2004-4-006, 2004.
 
 mod bundle;

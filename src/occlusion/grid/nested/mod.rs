@@ -1,5 +1,5 @@
-//! Grids within grids: every crowded voxel holds a grid of its own, of at most 4×4×4 voxels, fitted to what it
-//! holds.
+//! Grids within grids: every crowded voxel holds a grid of its own, of some 32 voxels at most, no more than
+//! 4 along an axis, fitted to what it holds.
 //!
 //! A recursive grid (Jevans & Wyvill 1989) with small grids, and a loose one (Ulrich 2000): each triangle belongs to the one
 //! voxel that its middle is in. Where the ray goes is not stepped through: what the voxels hold, eights of triangles and grids,
@@ -50,7 +50,7 @@ use crate::occlusion::{Cell, Eight, Visit, VisitMany, Walk};
 /// How far from its place the walk may take a point to be; see the table above.
 const MISPLACED: f32 = 1.0 / (1 << 19) as f32;
 
-/// Voxels along an axis of one grid at most: 64 in all, a bit each.
+/// Voxels along an axis of one grid at most. Of the 64 that there are numbers for, it has some half at most (`build`).
 const MOST: u32 = 4;
 
 /// Things that the voxels of one grid may hold: a bit each.
