@@ -6,10 +6,8 @@
 //! `auto` over the cheapest single method; *then* is a second pass, with everything built and learnt.
 
 mod common;
-#[path = "growth/contest.rs"]
-mod contest;
 
-use contest::{Answers, Contender, Costs, Queries, measure};
+use common::contest::{Answers, Contender, Costs, Queries, measure};
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
 use umbra::render::{Settings, forecast};
 use umbra::scene::{Scene, load};
