@@ -6,10 +6,8 @@
 //! `auto` over the cheapest single method; *then* is a second pass, with everything built and learnt.
 
 mod common;
-#[path = "growth/contest.rs"]
-mod contest;
 
-use contest::{Answers, Contender, Costs, Queries, measure};
+use common::contest::{Answers, Contender, Costs, Queries, measure};
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
 use umbra::render::{Settings, forecast};
 use umbra::scene::{Scene, load};
@@ -64,7 +62,7 @@ fn row(scene: &Scene, samples: u32) {
         .collect();
     let auto = move || {
         let auto = Auto::new(Method::Trace, Test::Exact, scene, grid).expect("it goes");
-        auto.expecting(forecast(scene, grid, &settings))
+        auto.expecting(forecast(scene, grid, &settings).expect("a picture"))
     };
     let prepare = Box::new(move || Answers::Method(Box::new(auto())));
     contenders.push(Contender { name: "auto", built: 0.0, prepare });

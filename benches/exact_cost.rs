@@ -11,7 +11,7 @@ mod common;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use common::{REAL_SCENES, folder};
+use common::{REAL_SCENES, folder, median};
 use umbra::geometry::Ray;
 use umbra::measure::recording::Recording;
 use umbra::occlusion::{Backend, BuildOptions, Occlusion, Tally, Test, build};
@@ -43,11 +43,6 @@ fn replay(engine: &dyn Occlusion, rays: &[Ray], blocked: &mut [bool]) -> Duratio
     let start = Instant::now();
     engine.occluded_many(black_box(rays), blocked, &mut Tally::default());
     start.elapsed()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 /// Nanoseconds a ray of `pluecker` and of `exact`.

@@ -11,7 +11,7 @@ mod common;
 
 use std::time::Instant;
 
-use common::{REAL_SCENES, path_of};
+use common::{REAL_SCENES, median, path_of, short};
 use glam::DVec2;
 use umbra::geometry::Ray;
 use umbra::measure::paper::thread_time;
@@ -55,37 +55,55 @@ fn main() {
         std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
     let all = BUILT_IN.iter().chain(&REAL_SCENES).map(|&name| name.to_owned());
     let scenes: Vec<String> = if named.is_empty() { all.collect() } else { named };
-    let mut ratios = vec![[const { Vec::new() }; MEASURES.len()]; RACERS.len()];
+    let mut outcomes = Vec::new();
     for name in &scenes {
-        let path = path_of(name);
-        match load(path.to_str().expect("scene names are text")) {
-            Ok(scene) => {
-                for (all, these) in ratios.iter_mut().zip(race(&scene, name)) {
-                    all.iter_mut().zip(these).for_each(|(all, this)| all.push(this));
-                }
-            }
+        match load(path_of(name)) {
+            Ok(scene) => outcomes.push(race(&scene, name)),
             Err(error) => eprintln!("*** NOT MEASURED: {error} ***"),
         }
     }
-    println!("median and largest ratio over {} scenes", ratios[0][0].len());
-    for ((name, ..), ratios) in RACERS.iter().zip(ratios) {
-        print!("  {name:14}");
-        for (measure, mut ratios) in MEASURES.iter().zip(ratios) {
-            ratios.sort_by(f64::total_cmp);
-            let largest = ratios.last().copied().unwrap_or(f64::NAN);
-            print!("  {measure}: {:.2} {largest:.2}", median(ratios));
-        }
-        println!();
+    if !outcomes.is_empty() {
+        println!("\n{}", markdown(&outcomes));
     }
+}
+
+/// What came of a race over one scene.
+struct Outcome {
+    scene: String,
+    triangles: usize,
+    /// Nanoseconds of a shadow ray in Embree.
+    embree: f64,
+    /// Of each racer, over Embree's.
+    ratios: Vec<[f64; MEASURES.len()]>,
+}
+
+/// What the table shows of whom: a place in `RACERS` and one in `MEASURES`.
+const COLUMNS: [(usize, usize); 8] =
+    [(2, 0), (2, 1), (2, 2), (2, 3), (1, 0), (3, 0), (4, 0), (5, 0)];
+
+/// Ratios of all scenes, their medians and the largest of each.
+fn markdown(outcomes: &[Outcome]) -> String {
+    let heads = COLUMNS.map(|(who, what)| format!("{}: {}", RACERS[who].0, MEASURES[what]));
+    let mut lines = vec![
+        format!("| scene | triangles | embree, ns | {} |", heads.join(" | ")),
+        format!("|{}", " --- |".repeat(3 + COLUMNS.len())),
+    ];
+    let row = |first: String, ratio: &dyn Fn(usize, usize) -> f64| {
+        let ratios = COLUMNS.map(|(who, what)| format!("{:.2}", ratio(who, what)));
+        format!("| {first} | {} |", ratios.join(" | "))
+    };
+    for Outcome { scene, triangles, embree, ratios } in outcomes {
+        let first = format!("{scene} | {triangles} | {}", short(*embree));
+        lines.push(row(first, &|who, what| ratios[who][what]));
+    }
+    let of_all = |who: usize, what: usize| outcomes.iter().map(move |one| one.ratios[who][what]);
+    lines.push(row("median | |".to_owned(), &|who, what| median(of_all(who, what).collect())));
+    lines.push(row("largest | |".to_owned(), &|who, what| of_all(who, what).fold(0.0, f64::max)));
+    lines.join("\n")
 }
 
 /// What ratios are taken of.
 const MEASURES: [&str; 4] = ["shadow", "nearest", "build", "memory"];
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-}
 
 /// Every so many parts of all, so that about `RAYS` are left.
 fn spread(rays: Vec<Ray>) -> Vec<Ray> {
@@ -127,7 +145,7 @@ struct Racer {
     blocked: usize,
 }
 
-fn race(scene: &Scene, name: &str) -> Vec<[f64; MEASURES.len()]> {
+fn race(scene: &Scene, name: &str) -> Outcome {
     let defaults = Settings { width: SIZE.0, height: SIZE.1, ..Settings::default() };
     let (width, height) =
         builtin::view(&scene.name).map_or(SIZE, |view| (view.width.min(SIZE.0), view.height));
@@ -184,7 +202,8 @@ fn race(scene: &Scene, name: &str) -> Vec<[f64; MEASURES.len()]> {
         );
         all.push(ratios);
     }
-    all
+    let triangles = scene.triangles.len();
+    Outcome { scene: scene.name.clone(), triangles, embree: first[0], ratios: all }
 }
 
 /// Everything, built in turns.

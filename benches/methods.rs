@@ -7,14 +7,14 @@
 //! same answers. *Pays after* is the number of rays a light beyond which build and first pass are won
 //! back, compared with `trace`.
 //!
-//! `cargo bench --bench methods`, and `-- NAME WxH` for scenes whose names hold NAME, and another size; the
-//! real scenes are looked for in `UMBRA_SCENES` or `../shared/scenes`.
+//! `cargo bench --bench methods`, and `-- NAME WxH` for scenes whose names hold NAME, and another size than 320 by 240; the
+//! real scenes are looked for in `UMBRA_SCENES` or `../shared/scenes`. It ends with a table of all scenes.
 
 mod common;
 
 use std::path::{Path, PathBuf};
 
-use common::{folder, roomy};
+use common::{folder, median, roomy, short};
 use umbra::measure::paper::Meter;
 use umbra::measure::recording::Recording;
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
@@ -64,10 +64,8 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    fn median(&self) -> u64 {
-        let mut passes = self.passes.clone();
-        passes.sort_unstable();
-        passes[passes.len() / 2]
+    fn median(&self) -> f64 {
+        median(self.passes.iter().map(|&pass| pass as f64).collect())
     }
 }
 
@@ -77,7 +75,8 @@ fn metered<T>(meter: &Meter, work: impl FnOnce() -> T) -> (T, u64) {
     (done, meter.read().expect("the count goes on") - before)
 }
 
-fn measure(scene: &Scene, settings: &Settings) {
+/// Prints the table of a scene; what a ray costs by each method once all is built, in the order of [`combinations`].
+fn measure(scene: &Scene, settings: &Settings) -> Vec<f64> {
     let recording =
         Recording::of(scene, settings, &Progress::default()).expect("settings are good");
     let rays = recording.queries().len();
@@ -118,8 +117,8 @@ fn measure(scene: &Scene, settings: &Settings) {
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let trace = rows[0].median();
     for row in &rows {
-        let saved = trace as f64 - row.median() as f64;
-        let invested = (row.build + row.first.saturating_sub(row.median())) as f64;
+        let saved = trace - row.median();
+        let invested = row.build as f64 + (row.first as f64 - row.median()).max(0.0);
         let pays = match saved > 0.0 {
             _ if row.name == Combination::default() => String::new(),
             false => "never".to_owned(),
@@ -131,13 +130,14 @@ fn measure(scene: &Scene, settings: &Settings) {
             row.name,
             row.build as f64 / 1e6,
             row.first as f64 / rays as f64,
-            row.median() as f64 / rays as f64,
-            row.median() as f64 / trace as f64,
+            row.median() / rays as f64,
+            row.median() / trace,
             100.0 * tally.verdict_lit as f64 / rays as f64,
             100.0 * tally.verdict_blocked as f64 / rays as f64,
             row.prepared.memory() as f64 / f64::from(1 << 20),
         );
     }
+    rows.iter().map(|row| row.median() / rays as f64).collect()
 }
 
 /// What verdicts settle of the recorded queries.
@@ -166,6 +166,7 @@ fn main() {
     let (width, height) = sizes.next().unwrap_or((320, 240));
     let settings = Settings { width, height, order: Order::Tiles, ..Settings::default() };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let mut summary = Vec::new();
     for name in SCENES {
         if !names.is_empty() && !names.iter().any(|wanted| name.contains(*wanted)) {
             continue;
@@ -175,6 +176,13 @@ fn main() {
             continue;
         };
         let scene = load(path.to_str().expect("scene names are text")).expect("it loads");
-        pool.install(|| measure(&scene, &settings));
+        summary.push((scene.name.clone(), pool.install(|| measure(&scene, &settings))));
+    }
+    let heads: Vec<String> = combinations().iter().map(|name| format!("`{name}`")).collect();
+    println!("\nA ray, once all is built:\n\n| scene | {} |", heads.join(" | "));
+    println!("|{}", " --- |".repeat(1 + heads.len()));
+    for (scene, rays) in summary {
+        let rays: Vec<String> = rays.into_iter().map(short).collect();
+        println!("| {scene} | {} |", rays.join(" | "));
     }
 }

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each bench uses a part of it")]
 
 pub mod by_place;
+pub mod contest;
 pub mod lights;
 pub mod runs;
 
@@ -41,4 +42,15 @@ pub fn roomy(combination: Combination) -> Plan {
 pub fn path_of(name: &str) -> PathBuf {
     let real = folder().join(name);
     if real.is_file() { real } else { PathBuf::from(name) }
+}
+
+/// The middle one; of an even number the upper of the two.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// Nanoseconds in two digits or more.
+pub fn short(nanoseconds: f64) -> String {
+    if nanoseconds < 10.0 { format!("{nanoseconds:.1}") } else { format!("{nanoseconds:.0}") }
 }

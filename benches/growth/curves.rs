@@ -1,5 +1,7 @@
 //! What grows, and who is asked.
 
+use std::time::Instant;
+
 use umbra::measure::paper::process_time;
 use umbra::occlusion::{
     Backend, BuildOptions, Embree, EmbreeOptions, Occlusion, PacketWidth, Test, build,
@@ -8,7 +10,7 @@ use umbra::render::Settings;
 use umbra::scene::{Scene, builtin};
 use umbra::shadow::{Auto, Combination, Method, prepare};
 
-use super::contest::{Answers, Contender, Costs, Queries, measure};
+use crate::common::contest::{Answers, Contender, Costs, Queries, measure};
 use crate::common::{lights, roomy};
 
 /// Seconds that a contender may take for a round of a point; then it is left out of greater ones.
@@ -50,22 +52,28 @@ struct Engines {
     packets: Option<Embree>,
 }
 
-/// What was made, and the seconds of all threads that it took.
-fn timed<T>(make: impl FnOnce() -> T) -> (T, f64) {
-    let start = process_time();
-    (make(), (process_time() - start) as f64 * 1e-9)
+/// What was made, and the seconds that it took: of the processor, if one thread answers, else by the clock on the wall, as
+/// answering is timed too.
+fn timed<T>(threads: usize, make: impl FnOnce() -> T) -> (T, f64) {
+    let (wall, processor) = (Instant::now(), process_time());
+    let made = make();
+    let seconds = match threads {
+        1 => (process_time() - processor) as f64 * 1e-9,
+        _ => wall.elapsed().as_secs_f64(),
+    };
+    (made, seconds)
 }
 
 impl Engines {
     fn over(scene: &Scene, threads: usize) -> Self {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| {
-            let grid = timed(|| {
+            let grid = timed(threads, || {
                 let options = BuildOptions::default();
                 build(Backend::Grid, Test::Exact, &scene.triangles, &options).expect("the grid")
             });
             // The default mode is the faster one.
-            let embree = timed(|| {
+            let embree = timed(threads, || {
                 let options = EmbreeOptions::default();
                 Embree::new(scene.triangles.clone(), false, options).expect("Embree")
             });

@@ -1,4 +1,4 @@
-//! The curves as CSV and SVG.
+//! The curves as CSV, SVG and Markdown.
 
 use std::fmt::Write;
 use std::io;
@@ -9,8 +9,9 @@ use umbra::measure::report::{
 };
 use umbra::whole_file::write_whole;
 
-use super::contest::Costs;
 use super::curves::{CONTENDERS, Curve, Point};
+use crate::common::contest::Costs;
+use crate::common::short;
 
 /// What a chart shows of a contender's costs.
 type Part = fn(&Costs) -> f64;
@@ -29,6 +30,34 @@ fn look(name: &str) -> Look {
         _ => (Hue::Orange, Shape::Square, false),
     };
     Look { hue, shape, filled }
+}
+
+/// A curve as a table in Markdown: nanoseconds a query with everything built, and in brackets with all building.
+pub fn markdown(curve: &Curve, points: &[Point]) -> String {
+    let mut text = format!("| {} | {} |\n", curve.name, CONTENDERS.join(" | "));
+    let _ = writeln!(text, "|{}", " --- |".repeat(1 + CONTENDERS.len()));
+    let mut scene = "";
+    for point in points {
+        let named = if point.scene == scene { "" } else { &*format!("{}, ", point.scene) };
+        let _ = write!(text, "| {named}{} |", point.x);
+        for name in CONTENDERS {
+            match point.costs.iter().find(|costs| costs.name == name) {
+                Some(costs) => {
+                    let each = |nanoseconds: f64| nanoseconds / point.queries as f64;
+                    let _ = write!(
+                        text,
+                        " {} ({}) |",
+                        short(each(costs.then)),
+                        short(each(costs.whole()))
+                    );
+                }
+                None => text.push_str("  |"),
+            }
+        }
+        text.push('\n');
+        scene = &point.scene;
+    }
+    text
 }
 
 /// Writes a curve's points and charts.

@@ -12,7 +12,6 @@
 
 #[path = "../common/mod.rs"]
 mod common;
-mod contest;
 mod curves;
 mod figures;
 mod sharing;
@@ -41,6 +40,7 @@ fn main() {
         if wanted.is_empty() || wanted.iter().any(|name| name == curve.name) {
             let points = (curve.measure)(rounds);
             figures::write(folder, curve, &points).expect("the folder can be written");
+            println!("\n{}", figures::markdown(curve, &points));
         }
     }
     if wanted.iter().any(|name| name == SHARING) {

@@ -1,10 +1,11 @@
-//! What came of a race: in full, and as a table in Markdown.
+//! What came of a race: in full, and as tables in Markdown.
 
 use std::fmt;
 
 use umbra::render::Settings;
 
 use super::bounds::Bounds;
+use crate::common::short;
 
 /// What one racer took.
 pub struct Figures {
@@ -64,8 +65,8 @@ impl Outcome {
         self.fastest(|_| true) / self.whole(who)
     }
 
-    /// The same of an Embree that gets rays as they come.
-    fn ratio_as_they_come(&self, who: &Figures) -> f64 {
+    /// The same of an Embree whose rays are not sorted.
+    fn ratio_unsorted(&self, who: &Figures) -> f64 {
         self.fastest(|embree| !embree.sorted) / self.whole(who)
     }
 
@@ -114,16 +115,16 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// Ours that have a ratio in the table.
-const RATED: [&str; 3] = ["shaft", "light-buffer", "auto"];
+/// Ours that have a ratio in the tables.
+const RATED: [&str; 3] = ["shaft", "auto", "light-buffer"];
 
-/// The table of several races, their means, and how far each way is from the bound.
+/// Two tables of several races, and their means: who is how much faster, and what lies behind it.
 pub fn markdown(outcomes: &[Outcome], bounds: &Bounds) -> String {
     let mut lines = vec![
-        "| scene | queries | best Embree, ns | rays as they come, ns | if sorted, ns | grid `trace` | `light-buffer` | `shaft` | `auto` | ratio of `shaft` | of `light-buffer` | of `auto` | with the grid | rays as they come: `shaft`, `auto` | MB: Embree, shaft, light buffer | over the bound: Embree, `shaft`, `auto` |".to_owned(),
-        format!("|{}", " --- |".repeat(16)),
+        "| scene | queries | best Embree | ns | unsorted, ns | `shaft`, ns | `auto`, ns | ratio of `shaft` | quartiles, built | of `auto` | with the grid | over unsorted: `shaft`, `auto` |".to_owned(),
+        format!("|{}", " --- |".repeat(12)),
     ];
-    lines.extend(outcomes.iter().filter_map(|outcome| row(outcome, bounds)));
+    lines.extend(outcomes.iter().filter_map(ratios));
     let mean = |name: &str, what: &str, ratio: fn(&Outcome, &Figures) -> f64| {
         let ratios =
             outcomes.iter().filter_map(|outcome| Some(ratio(outcome, outcome.ours(name)?)));
@@ -134,12 +135,14 @@ pub fn markdown(outcomes: &[Outcome], bounds: &Bounds) -> String {
     let mut means = RATED.map(|name| mean(name, "", Outcome::ratio)).to_vec();
     means.push(mean("auto", " with the grid", Outcome::ratio_with_grid));
     for name in ["shaft", "auto"] {
-        means.push(mean(name, " over rays as they come", Outcome::ratio_as_they_come));
+        means.push(mean(name, " over unsorted Embree", Outcome::ratio_unsorted));
     }
-    let partly = outcomes.iter().any(|outcome| outcome.asked < outcome.all);
-    lines.push(format!("\nGeometric mean of the ratios: {}.", means.join(", ")));
-    lines.push(format!("{bounds}"));
-    if partly {
+    lines.push(format!("\nGeometric mean of the ratios: {}.\n", means.join(", ")));
+    lines.push("| scene | if sorted, ns | grid `trace`, ns | `light-buffer`, ns | ratio of it | MB: Embree, `shaft`, `light-buffer` | over the bound: Embree, `shaft`, `auto` |".to_owned());
+    lines.push(format!("|{}", " --- |".repeat(7)));
+    lines.extend(outcomes.iter().filter_map(|outcome| behind(outcome, bounds)));
+    lines.push(format!("\n{bounds}"));
+    if outcomes.iter().any(|outcome| outcome.asked < outcome.all) {
         lines.push(
             "Only some tiles were answered: what `light-buffer` and `auto` built while answering is charged to those alone.".to_owned(),
         );
@@ -147,44 +150,45 @@ pub fn markdown(outcomes: &[Outcome], bounds: &Bounds) -> String {
     lines.join("\n")
 }
 
-fn row(outcome: &Outcome, bounds: &Bounds) -> Option<String> {
+fn ratios(outcome: &Outcome) -> Option<String> {
     let best = outcome.best(|_| true)?;
-    let [as_they_come, sorted] =
-        [false, true].map(|sorted| outcome.fastest(|embree| embree.sorted == sorted));
-    let [trace, buffer, shaft, auto] =
-        ["trace", "light-buffer", "shaft", "auto"].map(|name| outcome.ours(name));
-    let (trace, buffer, shaft, auto) = (trace?, buffer?, shaft?, auto?);
-    let [embree, trace, buffer_ns, shaft_ns, auto_ns] =
-        [best, trace, buffer, shaft, auto].map(|who| outcome.whole(who));
+    let (shaft, auto) = (outcome.ours("shaft")?, outcome.ours("auto")?);
     let [first, median, third] = outcome.quartiles(shaft);
-    let [embree_mb, shaft_mb, buffer_mb] =
-        [best, shaft, buffer].map(|who| format!("{:.1}", who.bytes as f64 / 1e6));
-    let over = [embree, shaft_ns, auto_ns].map(|time| format!("{:.1}", time / bounds.query()));
     Some(format!(
-        "| {} | {:.1} M | {} ({}) | {} | {} | {} | {} | {} | {} | **{:.2}** ({first:.2} {median:.2} {third:.2}) | {:.2} | {:.2} | {:.2} | {:.2}, {:.2} | {embree_mb}, {shaft_mb}, {buffer_mb} | {} |",
+        "| {} | {:.1} M | {} | {} | {} | {} | {} | **{:.2}** | {first:.2} {median:.2} {third:.2} | {:.2} | {:.2} | {:.2}, {:.2} |",
         outcome.scene,
         outcome.all as f64 / 1e6,
-        short(embree),
         best.name,
-        short(as_they_come),
-        short(sorted),
-        short(trace),
-        short(buffer_ns),
-        short(shaft_ns),
-        short(auto_ns),
+        short(outcome.whole(best)),
+        short(outcome.fastest(|embree| !embree.sorted)),
+        short(outcome.whole(shaft)),
+        short(outcome.whole(auto)),
         outcome.ratio(shaft),
-        outcome.ratio(buffer),
         outcome.ratio(auto),
         outcome.ratio_with_grid(auto),
-        outcome.ratio_as_they_come(shaft),
-        outcome.ratio_as_they_come(auto),
-        over.join(", "),
+        outcome.ratio_unsorted(shaft),
+        outcome.ratio_unsorted(auto),
     ))
 }
 
-/// Two digits or more.
-fn short(nanoseconds: f64) -> String {
-    if nanoseconds < 10.0 { format!("{nanoseconds:.1}") } else { format!("{nanoseconds:.0}") }
+fn behind(outcome: &Outcome, bounds: &Bounds) -> Option<String> {
+    let best = outcome.best(|_| true)?;
+    let [trace, buffer, shaft, auto] =
+        ["trace", "light-buffer", "shaft", "auto"].map(|name| outcome.ours(name));
+    let (trace, buffer, shaft, auto) = (trace?, buffer?, shaft?, auto?);
+    let megabytes =
+        [best, shaft, buffer].map(|who| format!("{:.1}", who.bytes as f64 / 1e6)).join(", ");
+    let over = [best, shaft, auto]
+        .map(|who| format!("{:.1}", outcome.whole(who) / bounds.query()))
+        .join(", ");
+    Some(format!(
+        "| {} | {} | {} | {} | {:.2} | {megabytes} | {over} |",
+        outcome.scene,
+        short(outcome.fastest(|embree| embree.sorted)),
+        short(outcome.whole(trace)),
+        short(outcome.whole(buffer)),
+        outcome.ratio(buffer),
+    ))
 }
 
 fn geometric_mean(values: &[f64]) -> f64 {

@@ -4,6 +4,8 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
 
+use serde::Serialize;
+
 use super::{
     Brute, Bvh2, Cwbvh, DividedGrid, Engine, Grid, GridError, GridOptions, NestedGrid, Occlusion,
     UnknownName, Walk, named,
@@ -14,7 +16,8 @@ use crate::geometry::intersect::{Moller, Pluecker, Watertight};
 use crate::geometry::lanes::Arithmetic;
 
 /// The engines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Backend {
     /// umbra's grid: crowded voxels hold grids of their own.
     Grid,
@@ -78,7 +81,8 @@ impl FromStr for Backend {
 }
 
 /// The triangle tests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Test {
     /// Möller and Trumbore, as Embree's default mode has it.
     Moller,

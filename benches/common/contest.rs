@@ -13,7 +13,8 @@ use umbra::render::{Settings, record};
 use umbra::scene::Scene;
 use umbra::shadow::{Prepared, Trace};
 
-use crate::common::runs::{Run, blocked_by_engine, blocked_by_worker};
+use super::median;
+use super::runs::{Run, blocked_by_engine, blocked_by_worker};
 
 /// The shadow queries of a picture, unit by unit.
 pub struct Queries {
@@ -84,11 +85,6 @@ impl Costs {
     pub fn whole(&self) -> f64 {
         self.preparing + self.first
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 /// Lets all take turns, so many rounds, on so many threads.
