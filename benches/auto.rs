@@ -62,7 +62,7 @@ fn row(scene: &Scene, samples: u32) {
         .collect();
     let auto = move || {
         let auto = Auto::new(Method::Trace, Test::Exact, scene, grid).expect("it goes");
-        auto.expecting(forecast(scene, grid, &settings))
+        auto.expecting(forecast(scene, grid, &settings).expect("a picture"))
     };
     let prepare = Box::new(move || Answers::Method(Box::new(auto())));
     contenders.push(Contender { name: "auto", built: 0.0, prepare });

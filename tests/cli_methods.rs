@@ -246,6 +246,7 @@ fn who_follows_the_advice_has_memory_enough() {
             Some(advice.to_owned())
         };
         let mut advice = render("1M");
+        assert!(advice.is_some(), "{method} asks for no more than 1M");
         for _ in 0..tries {
             advice = advice.and_then(|limit| render(&limit));
         }

@@ -7,8 +7,8 @@ use std::process::Command;
 use common::{REAL_SCENES, real_scenes};
 use glam::{DVec3, Vec3};
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
-use umbra::render::{Order, Piecewise, Progress, Rendered, Settings, render};
-use umbra::scene::{Camera, Draft, DraftTriangle, Light, Material, Scene, builtin, load};
+use umbra::render::{Order, Piecewise, Progress, Rendered, Settings, Statistics, render};
+use umbra::scene::{Camera, Draft, DraftTriangle, Light, Material, Scene, load};
 use umbra::shadow::{Method, Trace, prepare};
 
 fn small() -> Settings {
@@ -194,8 +194,6 @@ fn sky_through_glass(degrees: f64) -> Statistics {
     rendered.statistics
 }
 
-use umbra::render::Statistics;
-
 #[test]
 fn beyond_the_critical_angle_everything_is_reflected() {
     // Seen from below, the square's winding says "inside": the critical angle of 1.5 is 41.8 degrees.
@@ -233,20 +231,6 @@ fn the_shadow_mask_counts_what_every_light_sees() {
     for (x, y) in (0..4).flat_map(|x| (0..4).map(move |y| (x, y))) {
         let [seen] = mask.at(x, y) else { panic!("one light") };
         assert_eq!((seen.asked, seen.blocked), (9, 9));
-    }
-}
-
-#[test]
-fn every_builtin_scene_has_the_triangles_and_lights_of_the_paper() {
-    for (name, triangles, lights) in [
-        ("jittered-sparse", 551_408, 15),
-        ("jittered-dense", 551_408, 15),
-        ("drum", 59_692, 6),
-        ("chair-room", 40_937, 4),
-    ] {
-        assert!(builtin::NAMES.contains(&name));
-        let scene = load(name).unwrap();
-        assert_eq!((scene.triangles.len(), scene.lights.len()), (triangles, lights), "{name}");
     }
 }
 

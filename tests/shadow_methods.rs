@@ -5,10 +5,11 @@ mod common;
 mod rooms;
 
 use rooms::{backends, glass_room, small_chair_room};
-use umbra::occlusion::{Backend, Occlusion};
+use umbra::measure::contender::Choice;
+use umbra::occlusion::{Backend, BuildOptions, Occlusion, Test, build};
 use umbra::render::{Answered, Order, Progress, Rendered, Settings, Shown, Statistics, render};
 use umbra::scene::Scene;
-use umbra::shadow::{Method, MethodError, Plan, Retest, SelfShadow, prepare};
+use umbra::shadow::{Auto, Method, MethodError, Plan, Retest, SelfShadow, VerdictKind, prepare};
 
 const SETTINGS: Settings = Settings {
     width: 32,
@@ -208,54 +209,79 @@ fn leaving_out_the_spawner_gives_one_picture_for_every_method_and_backend() {
     }
 }
 
+/// What all pixels of a picture of answers show together.
+fn shown(rendered: &Rendered) -> Answered {
+    let map = rendered.answers.as_ref().unwrap();
+    let places = (0..SETTINGS.height).flat_map(|y| (0..SETTINGS.width).map(move |x| (x, y)));
+    places.map(|(x, y)| *map.at(x, y)).fold(Answered::default(), together)
+}
+
+fn together(a: Answered, b: Answered) -> Answered {
+    let outcomes = std::array::from_fn(|outcome| a.outcomes[outcome] + b.outcomes[outcome]);
+    Answered { outcomes, cost: a.cost + b.cost }
+}
+
+/// Whether a picture of the answers shows all that the counts do, glass included.
+fn assert_shows_every_query(rendered: &Rendered, what: &str) {
+    let (tally, glass) = (rendered.statistics.shadows, rendered.statistics.transparent);
+    let all = shown(rendered);
+    let [object, voxel, blocked, lit, proved_blocked, proved_lit] = all.outcomes.map(u64::from);
+    assert_eq!((object, voxel), (tally.object_hits, tally.voxel_hits), "{what}");
+    assert_eq!((proved_lit, proved_blocked), (tally.verdict_lit, tally.verdict_blocked), "{what}");
+    assert_eq!(object + voxel + blocked + proved_blocked, tally.blocked, "{what}");
+    assert_eq!(blocked + lit, tally.backend.traversals, "{what}");
+    let [casting, attenuating] = [tally.backend, glass].map(|t| t.cells + t.triangle_tests);
+    assert!(attenuating > 0, "{what}");
+    assert_eq!(all.cost, casting + attenuating, "{what}");
+}
+
 #[test]
 fn pictures_of_the_answers_show_every_query_and_change_nothing() {
     let scene = glass_room();
-    let (_, grid) = &backends(&scene)[0];
-    let shadows = prepare(Method::CacheTree, &scene, &**grid).unwrap();
-    for order in ORDERS {
-        let plain = Settings { order, ..SETTINGS };
-        let rendered = |answers| {
-            let settings = Settings { answers, ..plain };
-            render(&scene, &**grid, &*shadows, &settings, &Progress::default()).unwrap()
-        };
-        let sums = |rendered: &Rendered| {
-            let map = rendered.answers.as_ref().unwrap();
-            let mut sum = Answered::default();
-            for (x, y) in (0..plain.height).flat_map(|y| (0..plain.width).map(move |x| (x, y))) {
-                for (sum, n) in sum.outcomes.iter_mut().zip(map.at(x, y).outcomes) {
-                    *sum += n;
-                }
-                sum.cost += map.at(x, y).cost;
+    let grid = exact_grid(&scene);
+    for combination in Choice::every_method() {
+        let shadows = prepare(combination, &scene, &*grid).unwrap();
+        // Of the verdicts shafts alone find the glass, too.
+        let finds_glass = combination == VerdictKind::Shaft.into();
+        assert_eq!(shadows.glass().is_some(), finds_glass, "{combination}");
+        for order in ORDERS {
+            let what = format!("{combination} {order:?}");
+            let rendered = |answers| {
+                let settings = Settings { order, answers, ..SETTINGS };
+                render(&scene, &*grid, &*shadows, &settings, &Progress::default()).unwrap()
+            };
+            let (without, with) = (rendered(None), rendered(Some(Shown::default())));
+            assert!(without.answers.is_none());
+            assert_same(&with, &without, &what);
+            // Whoever answers many together may do less than for one by one.
+            if combination.verdicts.is_empty() {
+                assert_eq!(with.statistics, without.statistics, "{what}");
             }
-            sum
-        };
-        let (without, with) = (rendered(None), rendered(Some(Shown::default())));
-        assert!(without.answers.is_none());
-        assert_same(&with, &without, &format!("{order:?}"));
-        let (tally, glass) = (with.statistics.shadows, with.statistics.transparent);
-        assert_eq!(tally, without.statistics.shadows);
-        let all = sums(&with);
-        let [object, voxel, blocked, lit, _, _] = all.outcomes.map(u64::from);
-        assert_eq!((object, voxel), (tally.object_hits, tally.voxel_hits));
-        assert_eq!(object + voxel + blocked, tally.blocked);
-        assert_eq!(blocked + lit, tally.backend.traversals);
-        let [casting, attenuating] = [tally.backend, glass].map(|t| t.cells + t.triangle_tests);
-        assert_eq!(all.cost, casting + attenuating);
-
-        let mut by_light = Answered::default();
-        for light in 0..scene.lights.len() as u32 {
-            let one = sums(&rendered(Some(Shown { light: Some(light) })));
-            for (sum, n) in by_light.outcomes.iter_mut().zip(one.outcomes) {
-                *sum += n;
+            assert_shows_every_query(&with, &what);
+            let lights = 0..scene.lights.len() as u32;
+            let by_light = lights.map(|light| shown(&rendered(Some(Shown { light: Some(light) }))));
+            assert_eq!(by_light.fold(Answered::default(), together), shown(&with), "{what}");
+            let map = with.answers.unwrap();
+            for picture in [map.outcome_picture(), map.cost_picture()] {
+                assert_eq!(picture.width(), SETTINGS.width);
+                assert!(picture.height() > SETTINGS.height, "the legend is below");
             }
-            by_light.cost += one.cost;
-        }
-        assert_eq!(by_light, all);
-        let map = with.answers.unwrap();
-        for picture in [map.outcome_picture(), map.cost_picture()] {
-            assert_eq!(picture.width(), plain.width);
-            assert!(picture.height() > plain.height, "the legend is below");
         }
     }
+}
+
+#[test]
+fn pictures_of_the_answers_show_every_query_whomever_auto_asks() {
+    let scene = glass_room();
+    let grid = exact_grid(&scene);
+    for order in ORDERS {
+        let shadows = Auto::new(Method::Trace, Test::Exact, &scene, &*grid).unwrap();
+        let settings = Settings { order, answers: Some(Shown::default()), ..SETTINGS };
+        let shown = render(&scene, &*grid, &shadows, &settings, &Progress::default()).unwrap();
+        assert_shows_every_query(&shown, &format!("{order:?}"));
+    }
+}
+
+fn exact_grid(scene: &Scene) -> Box<dyn Occlusion> {
+    build(Backend::Grid, Test::Exact, &scene.triangles, &BuildOptions::default()).unwrap()
 }

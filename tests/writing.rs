@@ -124,6 +124,28 @@ fn obj_brings_geometry_and_materials_back() {
 }
 
 #[test]
+fn materials_of_one_name_come_back_apart() {
+    for names in [["a", "a_2", "a"], ["a_1", "", "_1"], ["a", "a", "a"], ["b c", "b_c", "b_c_2"]] {
+        let mut scene = varied();
+        let grey = |name: &str, grey: f32| Material {
+            name: name.to_owned(),
+            diffuse: Vec3::splat(grey),
+            ..Material::default()
+        };
+        let greys = [0.25, 0.5, 0.75];
+        scene.materials = names.iter().zip(greys).map(|(name, of)| grey(name, of)).collect();
+        scene.material_of = (0..scene.triangles.len() as u32).map(|id| id % 3).collect();
+        for file in ["names.obj", "names.glb"] {
+            let back = there_and_back(&scene, file);
+            for id in 0..scene.triangles.len() as u32 {
+                let [there, back] = [&scene, &back].map(|scene| scene.material(id).diffuse);
+                assert_eq!(there, back, "{names:?}: triangle {id} of {file}");
+            }
+        }
+    }
+}
+
+#[test]
 fn real_scenes_come_back_bit_for_bit() {
     let Some(folder) = real_scenes() else { return };
     for name in ["delft.obj", "staircase.glb", "satellite.glb"] {

@@ -117,7 +117,8 @@ pub fn ours<'a>(
     let make = |name: &str| -> Box<dyn Prepared + 'a> {
         if name == "auto" {
             let auto = Auto::new(Method::Trace, Test::Exact, scene, grid).expect(FITS);
-            return Box::new(auto.expecting(forecast(scene, grid, settings) / every as u64));
+            let queries = forecast(scene, grid, settings).expect("a picture");
+            return Box::new(auto.expecting(queries / every as u64));
         }
         let combination: Combination = name.parse().expect("a method");
         prepare(combination, scene, grid).expect(FITS)

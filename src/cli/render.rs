@@ -16,8 +16,8 @@ use crate::render::{
     Film, MOST_SAMPLES, Order, Picture, Progress, Rendered, Settings, Shown, Statistics,
     encode_picture, forecast, render,
 };
-use crate::scene::{Dropped, builtin};
-use crate::shadow::{LightChoices, Settled, VerdictReport};
+use crate::scene::{Dropped, Scene, builtin};
+use crate::shadow::{LightChoices, Prepared, Settled, VerdictReport};
 
 const DETAILS: &str = "\
 A scene without camera or lights gets sensible ones, and the command says so.
@@ -117,6 +117,17 @@ struct Report<'a> {
     counts: Statistics,
 }
 
+/// A picture, and what made it.
+struct Made<'a> {
+    scene: &'a Scene,
+    built: &'a Built,
+    shadows: &'a dyn Prepared,
+    rendered: &'a Rendered,
+    exposure: f32,
+    load_seconds: f64,
+    render_seconds: f64,
+}
+
 /// A verdict: what it took, and what it did.
 #[derive(Serialize)]
 struct Verdict {
@@ -167,29 +178,47 @@ impl Render {
         let start = Instant::now();
         let scene = load_scene(&self.scene, outputs)?;
         let load_seconds = start.elapsed().as_secs_f64();
-        if let Some(light) = self.aov_light.filter(|&light| light as usize >= scene.lights.len()) {
-            return Err(Failure::Input(format!(
+        self.check_light(&scene)?;
+        let built = self.engine.build(&scene)?;
+        let backend = &*built.backend;
+        let start = Instant::now();
+        let expected = || forecast(&scene, backend, settings);
+        let shadows = &*self.shadows.prepare(&scene, &built, &self.engine, expected)?;
+        let pixels = u64::from(settings.width) * u64::from(settings.height);
+        let progress = Progress::default();
+        let rendered =
+            with_bar(pixels, &progress, || render(&scene, backend, shadows, settings, &progress))?;
+        let render_seconds = start.elapsed().as_secs_f64();
+        let exposure =
+            self.exposure.or(scene.exposure).unwrap_or_else(|| rendered.film.automatic_exposure());
+        let (scene, built, rendered) = (&scene, &built, &rendered);
+        let made = Made { scene, built, shadows, rendered, exposure, load_seconds, render_seconds };
+        let mut files = self.pictures(kind, &made)?;
+        let report = self.report(settings, &made);
+        report.say();
+        if let Some(stats) = &self.stats {
+            files.add_json(stats, &report)?;
+        }
+        files.finish()
+    }
+
+    /// Refuses a light that the scene does not have.
+    fn check_light(&self, scene: &Scene) -> Result<(), Failure> {
+        match self.aov_light.filter(|&light| light as usize >= scene.lights.len()) {
+            None => Ok(()),
+            Some(light) => Err(Failure::Input(format!(
                 "--aov-light {light}: {} has {}, numbered from 0",
                 scene.name,
                 count(scene.lights.len() as u64, "light")
-            )));
+            ))),
         }
-        let built = self.engine.build(&scene)?;
-        let Built { backend, seconds: build_seconds, .. } = &built;
-        let start = Instant::now();
-        let pixels = u64::from(settings.width) * u64::from(settings.height);
-        let expected = || forecast(&scene, &**backend, settings);
-        let shadows = self.shadows.prepare(&scene, &built, &self.engine, expected)?;
-        let progress = Progress::default();
-        let rendered = with_bar(pixels, &progress, || {
-            render(&scene, &**backend, &*shadows, settings, &progress)
-        })?;
-        let render_seconds = start.elapsed().as_secs_f64();
-        let Rendered { film, mask, answers, statistics, .. } = rendered;
-        let exposure =
-            self.exposure.or(scene.exposure).unwrap_or_else(|| film.automatic_exposure());
+    }
+
+    /// Writes the picture, and those of the shadows if they were kept; none is in its place yet.
+    fn pictures(&self, kind: Picture, made: &Made<'_>) -> Result<Outputs, Failure> {
         let mut files = Outputs::default();
-        files.add(&self.output, &encode_picture(&film, exposure, kind))?;
+        let Rendered { film, mask, answers, .. } = made.rendered;
+        files.add(&self.output, &encode_picture(film, made.exposure, kind))?;
         if let (Some(mask), Some(answers)) = (mask, answers) {
             let films: [Film; PICTURES.len()] =
                 [mask.picture(), answers.outcome_picture(), answers.cost_picture()];
@@ -198,46 +227,17 @@ impl Render {
                 files.add(&beside(&self.output, what), &picture)?;
             }
         }
-        let rays = statistics.rays;
-        let verdicts: Vec<Verdict> = shadows
-            .verdicts()
-            .into_iter()
-            .map(|report| Verdict {
-                settled: statistics.shadows.verdicts[report.verdict.index()],
-                report,
-            })
-            .collect();
-        for Verdict { report, .. } in &verdicts {
-            for note in &report.notes {
-                say!("umbra: {}: {note}", report.verdict);
-            }
-        }
-        say!(
-            "{}: {}, {}, {} {} {}; {} ({} to lights, {} of them blocked) in {:.2} s: {:.2} million a second; loaded in {:.2} s, built in {:.2} s",
-            scene.name,
-            count(scene.triangles.len() as u64, "triangle"),
-            count(scene.lights.len() as u64, "light"),
-            self.engine.backend,
-            self.engine.test(),
-            self.shadows.name(),
-            count(rays.total(), "ray"),
-            rays.shadow,
-            statistics.shadows.blocked,
-            render_seconds,
-            rays.total() as f64 / render_seconds / 1e6,
-            load_seconds,
-            build_seconds,
-        );
-        let choices = shadows.choices();
-        for light in choices.iter().take(SHOWN_LIGHTS) {
-            say!("umbra: {light}");
-        }
-        if choices.len() > SHOWN_LIGHTS {
-            let more = count((choices.len() - SHOWN_LIGHTS) as u64, "more light");
-            say!("umbra: and {more}, see --stats FILE");
-        }
-        let Some(stats) = &self.stats else { return files.finish() };
-        let report = Report {
+        Ok(files)
+    }
+
+    fn report<'a>(&'a self, settings: &Settings, made: &Made<'a>) -> Report<'a> {
+        let &Made { scene, built, shadows, rendered, .. } = made;
+        let counts = rendered.statistics;
+        let verdict = |report: VerdictReport| Verdict {
+            settled: counts.shadows.verdicts[report.verdict.index()],
+            report,
+        };
+        Report {
             version: env!("CARGO_PKG_VERSION"),
             scene: &scene.name,
             triangles: scene.triangles.len(),
@@ -252,24 +252,57 @@ impl Render {
             memory_limit: self.engine.most_bytes(),
             shadows: self.shadows.name(),
             shadow_options: &self.shadows,
-            verdicts,
-            choices,
+            verdicts: shadows.verdicts().into_iter().map(verdict).collect(),
+            choices: shadows.choices(),
             width: settings.width,
             height: settings.height,
             samples_per_pixel: settings.samples * settings.samples,
             depth: settings.depth,
             order: settings.order,
             threads: rayon::current_num_threads(),
-            exposure,
-            backend_bytes: backend.memory(),
+            exposure: made.exposure,
+            backend_bytes: built.backend.memory(),
             shadow_bytes: shadows.memory(),
-            load_seconds,
-            build_seconds: *build_seconds,
-            render_seconds,
-            counts: statistics,
-        };
-        files.add_json(stats, &report)?;
-        files.finish()
+            load_seconds: made.load_seconds,
+            build_seconds: built.seconds,
+            render_seconds: made.render_seconds,
+            counts,
+        }
+    }
+}
+
+impl Report<'_> {
+    /// Prints what is worth a line.
+    fn say(&self) {
+        for Verdict { report, .. } in &self.verdicts {
+            for note in &report.notes {
+                say!("umbra: {}: {note}", report.verdict);
+            }
+        }
+        let rays = self.counts.rays;
+        say!(
+            "{}: {}, {}, {} {} {}; {} ({} to lights, {} of them blocked) in {:.2} s: {:.2} million a second; loaded in {:.2} s, built in {:.2} s",
+            self.scene,
+            count(self.triangles as u64, "triangle"),
+            count(self.lights as u64, "light"),
+            self.backend,
+            self.test,
+            self.shadows,
+            count(rays.total(), "ray"),
+            rays.shadow,
+            self.counts.shadows.blocked,
+            self.render_seconds,
+            rays.total() as f64 / self.render_seconds / 1e6,
+            self.load_seconds,
+            self.build_seconds,
+        );
+        for light in self.choices.iter().take(SHOWN_LIGHTS) {
+            say!("umbra: {light}");
+        }
+        if self.choices.len() > SHOWN_LIGHTS {
+            let more = count((self.choices.len() - SHOWN_LIGHTS) as u64, "more light");
+            say!("umbra: and {more}, see --stats FILE");
+        }
     }
 }
 

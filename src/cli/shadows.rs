@@ -10,11 +10,11 @@ use super::failure::{Failure, say};
 use super::numbers::{finite, whole};
 use super::options::{Built, EngineOptions, MOST_DEPTH};
 use crate::occlusion::Backend;
-use crate::render::Order;
+use crate::render::{Order, SettingsError};
 use crate::scene::Scene;
 use crate::shadow::{
-    Auto, Combination, CombinationError, Method, MethodError, Plan, Prepared, Retest, SelfShadow,
-    VerdictKind, prepare,
+    Auto, Combination, CombinationError, Method, Plan, Prepared, Retest, SelfShadow, VerdictKind,
+    prepare,
 };
 
 /// What stands before the engine.
@@ -173,8 +173,8 @@ impl ShadowOptions {
         scene: &'a Scene,
         built: &'a Built,
         engine: &EngineOptions,
-        expected: impl FnOnce() -> u64,
-    ) -> Result<Box<dyn Prepared + 'a>, MethodError> {
+        expected: impl FnOnce() -> Result<u64, SettingsError>,
+    ) -> Result<Box<dyn Prepared + 'a>, Failure> {
         let backend = &*built.backend;
         let given = self.given(engine.backend);
         let plan = Plan {
@@ -203,6 +203,6 @@ impl ShadowOptions {
             return Ok(prepared);
         }
         let auto = Auto::new(plan, engine.test(), scene, backend)?;
-        Ok(Box::new(auto.expecting(expected())))
+        Ok(Box::new(auto.expecting(expected()?)))
     }
 }

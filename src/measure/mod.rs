@@ -4,7 +4,7 @@ pub mod compare;
 pub mod contender;
 mod error;
 pub mod extremes;
-mod grouped;
+mod numbers;
 pub mod paper;
 pub mod recording;
 pub mod report;
@@ -13,4 +13,5 @@ mod truth;
 pub mod wilson;
 
 pub use error::MeasureError;
-pub(crate) use grouped::grouped;
+pub(crate) use numbers::grouped;
+use numbers::{bits, told};

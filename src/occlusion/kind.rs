@@ -4,6 +4,8 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
 
+use serde::Serialize;
+
 use super::{
     Brute, Bvh2, Cwbvh, DividedGrid, Engine, Grid, GridError, GridOptions, NestedGrid, Occlusion,
     UnknownName, Walk, named,
@@ -14,7 +16,8 @@ use crate::geometry::intersect::{Moller, Pluecker, Watertight};
 use crate::geometry::lanes::Arithmetic;
 
 /// The engines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Backend {
     /// umbra's grid: crowded voxels hold grids of their own.
     Grid,
@@ -31,6 +34,18 @@ pub enum Backend {
 impl Backend {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Grid, Self::Embree, Self::Bvh2, Self::Cwbvh, Self::Brute];
+
+    /// Whether this umbra was built with it.
+    #[must_use]
+    pub fn is_built_in(self) -> bool {
+        self != Self::Embree || cfg!(feature = "embree")
+    }
+
+    /// Whether it can decide by a test: Embree has those of its own only.
+    #[must_use]
+    pub fn has(self, test: Test) -> bool {
+        self != Self::Embree || matches!(test, Test::Pluecker | Test::Moller)
+    }
 
     /// The test it uses where nothing else is asked for: the exact one where it can.
     #[must_use]
@@ -66,7 +81,8 @@ impl FromStr for Backend {
 }
 
 /// The triangle tests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Test {
     /// Möller and Trumbore, as Embree's default mode has it.
     Moller,
@@ -113,7 +129,7 @@ impl FromStr for Test {
 pub struct BuildOptions {
     /// How finely the grid divides the scene.
     pub grid: GridOptions,
-    /// The arithmetic of the triangle tests; that of this CPU if none is named.
+    /// The arithmetic of the triangle tests, which this CPU must have; its newest if none is named. Embree has its own.
     pub arithmetic: Option<Arithmetic>,
     /// How Embree is used.
     #[cfg(feature = "embree")]
@@ -135,6 +151,9 @@ pub enum BackendError {
     /// The grid cannot be as fine as was asked for.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// This CPU lacks the arithmetic that was asked for.
+    #[error("this CPU has no {} arithmetic; leave it to umbra, which takes the newest there is", .0.name())]
+    Arithmetic(Arithmetic),
     /// Embree decides by its own arithmetic.
     #[error(
         "embree has no test '{0}': its own are pluecker (robust mode) and moller (default mode)"
@@ -164,13 +183,17 @@ pub enum BackendError {
 /// ```
 ///
 /// # Errors
-/// If the backend is not to be had here, or not as fine.
+/// If the backend or the arithmetic is not to be had here, or the grid not as fine.
 pub fn build(
     backend: Backend,
     test: Test,
     triangles: &Arc<Triangles>,
     options: &BuildOptions,
 ) -> Result<Box<dyn Occlusion>, BackendError> {
+    let own = backend != Backend::Embree;
+    if let Some(arithmetic) = options.arithmetic.filter(|one| own && !one.is_available()) {
+        return Err(BackendError::Arithmetic(arithmetic));
+    }
     Ok(match backend {
         Backend::Grid => grid(test, triangles, options)?,
         Backend::Bvh2 => engine(test, triangles, Bvh2::new(triangles), options),
@@ -201,11 +224,10 @@ fn embree(
     triangles: &Arc<Triangles>,
     options: &BuildOptions,
 ) -> Result<Box<dyn Occlusion>, BackendError> {
-    let robust = match test {
-        Test::Pluecker => true,
-        Test::Moller => false,
-        other => return Err(BackendError::NotInEmbree(other)),
-    };
+    if !Backend::Embree.has(test) {
+        return Err(BackendError::NotInEmbree(test));
+    }
+    let robust = test == Test::Pluecker;
     Ok(Box::new(super::Embree::new(triangles.clone(), robust, options.embree)?))
 }
 

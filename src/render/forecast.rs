@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::order::Place;
-use super::{Progress, RayCounts, Settings, whitted::Unit};
+use super::{Progress, RayCounts, Settings, SettingsError, whitted::Unit};
 use crate::occlusion::Occlusion;
 use crate::scene::Scene;
 use crate::shadow::{Answer, Prepared, ShadowQuery, ShadowTally, Shadows};
@@ -13,14 +13,21 @@ use crate::shadow::{Answer, Prepared, ShadowQuery, ShadowTally, Shadows};
 pub(super) const STRIDE: u32 = 32;
 
 /// About how many shadow queries a render will ask.
-#[must_use]
-pub fn forecast(scene: &Scene, backend: &dyn Occlusion, settings: &Settings) -> u64 {
+///
+/// # Errors
+/// If the settings make no picture.
+pub fn forecast(
+    scene: &Scene,
+    backend: &dyn Occlusion,
+    settings: &Settings,
+) -> Result<u64, SettingsError> {
+    settings.check()?;
     let small = Small::of(scene, backend, settings, STRIDE);
     let asked: u64 = small.rays.iter().map(|rays| rays.shadow).sum();
     let Settings { width, height, samples, .. } = *settings;
     let times = f64::from(width) * f64::from(height) * f64::from(samples).powi(2)
         / (f64::from(small.width) * f64::from(small.height));
-    (asked as f64 * times) as u64
+    Ok((asked as f64 * times) as u64)
 }
 
 /// The rays of a small picture of one sample a pixel.
@@ -32,7 +39,7 @@ pub(super) struct Small {
 }
 
 impl Small {
-    /// The same view in so many times fewer pixels along each side.
+    /// The same view in so many times fewer pixels along each side; of settings that were checked.
     pub fn of(scene: &Scene, backend: &dyn Occlusion, settings: &Settings, stride: u32) -> Self {
         let (width, height) = (settings.width.div_ceil(stride), settings.height.div_ceil(stride));
         let small = Settings {
@@ -98,7 +105,7 @@ mod tests {
             let options = BuildOptions::default();
             let grid = build(Backend::Grid, Test::Exact, &scene.triangles, &options).unwrap();
             let settings = Settings { samples: 2, depth: 3, ..Settings::default() };
-            let expected = forecast(&scene, &*grid, &settings) as f64;
+            let expected = forecast(&scene, &*grid, &settings).unwrap() as f64;
             let small = Settings { width: 160, height: 120, samples: 1, ..settings };
             let rendered =
                 render(&scene, &*grid, &Trace::new(&*grid), &small, &Progress::default()).unwrap();

@@ -72,8 +72,6 @@ pub(super) struct Unit<'a> {
     asked: Vec<ShadowQuery>,
     about: Vec<(u32, Illumination)>,
     answers: Vec<Answer>,
-    /// What each answer cost, if that is to be shown.
-    costs: Vec<u64>,
 }
 
 /// A ray that sees, on its way.
@@ -126,7 +124,6 @@ impl<'a> Unit<'a> {
             asked: Vec::new(),
             about: Vec::new(),
             answers: Vec::new(),
-            costs: Vec::new(),
         }
     }
 
@@ -248,10 +245,35 @@ impl<'a> Unit<'a> {
 
     /// Asks whether one light reaches the vertices, and adds its light where it does.
     fn ask(&mut self, light: usize, vertices: &[Vertex], pixel: impl Fn(u32) -> (usize, Place)) {
+        self.pose(light, vertices);
+        let asked = self.asked.len();
+        self.done.statistics.rays.shadow += asked as u64;
+        if self.settings.answers.is_some_and(|shown| shown.includes(light)) {
+            // One by one, glass included, so that it is known what each costs.
+            let mut before = self.spent();
+            for query in 0..asked {
+                self.answer(light, vertices, query..query + 1);
+                let after = self.spent();
+                let vertex = &vertices[self.about[query].0 as usize];
+                let answered = &mut self.done.answered[pixel(vertex.sample).0];
+                answered.outcomes[self.answers[query].outcome as usize] += 1;
+                answered.cost += after - before;
+                before = after;
+            }
+        } else {
+            self.answer(light, vertices, 0..asked);
+        }
+        if self.settings.mask || self.settings.record {
+            self.keep(light, vertices, pixel);
+        }
+    }
+
+    /// Collects the queries of all vertices that face a light.
+    fn pose(&mut self, light: usize, vertices: &[Vertex]) {
         let source = &self.scene.lights[light];
         self.asked.clear();
         self.about.clear();
-        for (index, vertex) in vertices.iter().enumerate() {
+        for (vertex, index) in vertices.iter().zip(0..) {
             let material = self.scene.material(vertex.triangle);
             if material.diffuse == Vec3::ZERO && material.highlight == Vec3::ZERO {
                 continue;
@@ -260,33 +282,47 @@ impl<'a> Unit<'a> {
             if vertex.surface.faces(&illumination) {
                 let ray = source.shadow_ray(vertex.origin);
                 self.asked.push(ShadowQuery { ray, path: vertex.path, spawner: vertex.triangle });
-                self.about.push((index as u32, illumination));
+                self.about.push((index, illumination));
             }
         }
         self.answers.clear();
         self.answers.resize(self.asked.len(), Answer::default());
-        let shown = self.settings.answers.is_some_and(|shown| shown.includes(light));
-        self.answer(light, shown);
-        self.done.statistics.rays.shadow += self.asked.len() as u64;
+    }
 
-        let transparent = self.scene.has_transparent();
-        if transparent {
-            self.look_for_glass(light);
+    /// Has some of the queries answered, and adds the light of those that are not blocked.
+    fn answer(&mut self, light: usize, vertices: &[Vertex], queries: Range<usize>) {
+        let Self { scene, backend, .. } = *self;
+        let (asked, about) = (&self.asked[queries.clone()], &self.about[queries.clone()]);
+        let answers = &mut self.answers[queries];
+        self.shadows.answer(light, asked, answers);
+        let is_lit = |answer: &Answer| !answer.blocked;
+        let attenuates = scene.has_transparent();
+        if let Some(glass) = self.glass.filter(|_| attenuates) {
+            let lit = asked.iter().zip(&*answers).filter(|(_, answer)| is_lit(answer));
+            self.lit.clear();
+            self.lit.extend(lit.map(|(query, _)| *query));
+            self.attenuation.prepare(glass, light, &self.lit);
         }
-        let mut lit = 0;
-        let about = self.about.iter().zip(&self.answers);
-        for (asked, (&(index, illumination), answer)) in about.enumerate() {
-            let query = &self.asked[asked];
-            let vertex = &vertices[index as usize];
-            // Not where nobody wants to know: it takes a division.
-            let pixel = || pixel(vertex.sample);
-            if shown {
-                let answered = &mut self.done.answered[pixel().0];
-                answered.outcomes[answer.outcome as usize] += 1;
-                answered.cost += self.costs[asked];
+        let lit = asked.iter().zip(about).zip(answers).filter(|(_, answer)| is_lit(answer));
+        for (place, ((query, (vertex, illumination)), _)) in lit.enumerate() {
+            let vertex = &vertices[*vertex as usize];
+            let mut radiance = vertex.surface.shade(scene.material(vertex.triangle), illumination);
+            if attenuates {
+                let spawner = self.leaves_out_spawner.then_some(query.spawner);
+                radiance *=
+                    self.attenuation.transmittance(scene, backend, place, &query.ray, spawner);
             }
+            self.gathered[vertex.sample as usize] += vertex.throughput * radiance;
+        }
+    }
+
+    /// Keeps the shadow mask and the queries, as far as they are asked for.
+    fn keep(&mut self, light: usize, vertices: &[Vertex], pixel: impl Fn(u32) -> (usize, Place)) {
+        let about = self.about.iter().map(|(vertex, _)| &vertices[*vertex as usize]);
+        for ((query, vertex), answer) in self.asked.iter().zip(about).zip(&self.answers) {
+            let (index, pixel) = pixel(vertex.sample);
             if self.settings.mask && vertex.path == Path::EYE {
-                let seen = &mut self.done.seen[pixel().0 * self.scene.lights.len() + light];
+                let seen = &mut self.done.seen[index * self.scene.lights.len() + light];
                 seen.asked += 1;
                 seen.blocked += u16::from(answer.blocked);
             }
@@ -294,53 +330,17 @@ impl<'a> Unit<'a> {
                 self.done.queries.push(RecordedQuery {
                     query: *query,
                     light: light as u32,
-                    pixel: pixel().1,
+                    pixel,
                     blocked: answer.blocked,
                 });
             }
-            if answer.blocked {
-                continue;
-            }
-            let mut radiance =
-                vertex.surface.shade(self.scene.material(vertex.triangle), &illumination);
-            if transparent {
-                let place = lit;
-                lit += 1;
-                let spawner = self.leaves_out_spawner.then_some(query.spawner);
-                let before = work(&self.attenuation.tally);
-                let Self { scene, backend, .. } = *self;
-                radiance *=
-                    self.attenuation.transmittance(scene, backend, place, &query.ray, spawner);
-                if shown {
-                    self.done.answered[pixel().0].cost += work(&self.attenuation.tally) - before;
-                }
-            }
-            self.gathered[vertex.sample as usize] += vertex.throughput * radiance;
         }
     }
 
-    /// Finds what is transparent before the light, for queries that are not blocked.
-    fn look_for_glass(&mut self, light: usize) {
-        let Some(glass) = self.glass else { return };
-        let asked = self.asked.iter().zip(&self.answers);
-        self.lit.clear();
-        self.lit.extend(asked.filter(|(_, answer)| !answer.blocked).map(|(query, _)| *query));
-        self.attenuation.prepare(glass, light, &self.lit);
-    }
-
-    /// Has the queries answered; one by one, noting what each costs, if they are to be shown.
-    fn answer(&mut self, light: usize, shown: bool) {
-        if !shown {
-            return self.shadows.answer(light, &self.asked, &mut self.answers);
-        }
-        self.costs.clear();
-        let mut before = work(&self.shadows.tally().backend);
-        for (query, answer) in self.asked.iter().zip(&mut self.answers) {
-            self.shadows.answer(light, std::slice::from_ref(query), std::slice::from_mut(answer));
-            let after = work(&self.shadows.tally().backend);
-            self.costs.push(after - before);
-            before = after;
-        }
+    /// What all queries so far have cost, attenuation included: what the pictures of cost show.
+    fn spent(&self) -> u64 {
+        let work = |tally: &Tally| tally.cells + tally.triangle_tests;
+        work(&self.shadows.tally().backend) + work(&self.attenuation.tally)
     }
 
     /// The next generation: mirrored and refracted rays.
@@ -388,9 +388,4 @@ impl<'a> Unit<'a> {
             }
         }
     }
-}
-
-/// What the pictures of cost show.
-fn work(tally: &Tally) -> u64 {
-    tally.cells + tally.triangle_tests
 }

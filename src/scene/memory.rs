@@ -38,10 +38,19 @@ fn within(triangles: u64, available: u64) -> Result<(), String> {
 
 /// Bytes that can be had: what the system has to give, or less where a control group limits it.
 fn available() -> u64 {
-    let group = group_limit()
-        .map(|limit| limit.saturating_sub(number("/sys/fs/cgroup/memory.current").unwrap_or(0)));
     let free = system("MemAvailable:").unwrap_or(UNKNOWN_MEMORY);
-    group.map_or(free, |group| group.min(free))
+    group_limit().map_or(free, |limit| {
+        let used = number("/sys/fs/cgroup/memory.current").unwrap_or(0);
+        let parts = fs::read_to_string("/sys/fs/cgroup/memory.stat").unwrap_or_default();
+        free.min(left(limit, used, &parts))
+    })
+}
+
+/// What a control group leaves of its limit. Among what it uses are files that were read once: the system keeps them only as long
+/// as nobody wants their room.
+fn left(limit: u64, used: u64, parts: &str) -> u64 {
+    let given_back = number_after(parts, "inactive_file ").unwrap_or(0);
+    limit.saturating_sub(used.saturating_sub(given_back))
 }
 
 /// Bytes that prepared structures may take where nothing else is asked for: a quarter of the machine's, or
@@ -55,8 +64,13 @@ pub fn default_budget() -> u64 {
 /// Bytes that the system gives under this name.
 fn system(name: &str) -> Option<u64> {
     let text = fs::read_to_string("/proc/meminfo").ok()?;
+    number_after(&text, name).map(|kibibytes| kibibytes << 10)
+}
+
+/// The number that follows a name at the beginning of a line.
+fn number_after(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
-    line.split_whitespace().next()?.parse::<u64>().ok().map(|kibibytes| kibibytes << 10)
+    line.split_whitespace().next()?.parse().ok()
 }
 
 /// Bytes that the control group may use, if there is a limit.
@@ -78,5 +92,14 @@ mod tests {
         let refusal = within(100_000_000, 1 << 30).unwrap_err();
         assert!(refusal.contains("100000000 triangles") && refusal.contains("GiB"), "{refusal}");
         assert!(within(1 << 32, u64::MAX).is_err());
+    }
+
+    #[test]
+    fn files_that_were_read_once_take_no_room_from_a_scene() {
+        let parts = "anon 10\nfile 80\ninactive_anon 3\ninactive_file 70\nactive_file 10\n";
+        assert_eq!(left(100, 90, parts), 80);
+        assert_eq!(left(100, 90, ""), 10);
+        assert_eq!(left(100, 120, "inactive_file 5"), 0);
+        assert_eq!(left(100, 60, "inactive_file 70"), 100);
     }
 }

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Serialize, Serializer};
+
 use super::{Method, VerdictKind};
 
 /// Which verdicts are asked; each at most once, in the order of [`VerdictKind::ALL`].
@@ -100,6 +102,12 @@ impl fmt::Display for Combination {
         let memory = self.verdicts.is_empty() || self.method != Method::Trace;
         let parts: Vec<&str> = verdicts.chain(memory.then(|| self.method.name())).collect();
         f.write_str(&parts.join("+"))
+    }
+}
+
+impl Serialize for Combination {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 

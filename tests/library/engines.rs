@@ -1,15 +1,17 @@
 //! Engines, shadow methods and comparisons.
 
 use std::io;
+use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
 use umbra::geometry::Ray;
 use umbra::glam::Vec3;
-use umbra::measure::compare::{Comparison, compare};
+use umbra::measure::compare::{Claim, Comparison, compare};
 use umbra::measure::contender::{Choice, Contender};
 use umbra::measure::recording::Recording;
 use umbra::occlusion::{Backend, BackendError, BuildOptions, Grid, GridOptions, Test, build};
 use umbra::render::RecordedQuery;
+use umbra::scene::Scene;
 use umbra::shadow::{Auto, Method, Path, ShadowQuery, Shadows, Trace, Verdicts, prepare};
 use umbra::whole_file::WholeFile;
 
@@ -49,6 +51,24 @@ fn queries_about_a_light_that_is_not_there_are_not_compared() {
     let refused = compare(&scene, &recording, &contenders, &AtomicU64::new(0)).unwrap_err();
     let told = "unnamed scene: a query asks about light 9, and there are 1";
     assert!(refused.to_string().starts_with(told), "{refused}");
+}
+
+#[test]
+fn a_comparison_of_nothing_contradicts_nothing() {
+    let scene = scene();
+    let bare = Scene { triangles: Arc::default(), ..scene.clone() };
+    let query =
+        ShadowQuery { ray: Ray::between(Vec3::ZERO, 3.0 * Vec3::Y), path: Path::EYE, spawner: 0 };
+    let recorded = RecordedQuery { query, light: 0, pixel: (0, 0), blocked: false };
+    for (scene, queries) in [(&scene, vec![]), (&bare, vec![]), (&bare, vec![recorded])] {
+        let (recording, answers) =
+            (Recording::new(1, 1, queries.clone()), vec![false; queries.len()]);
+        let mut comparison = Comparison::new(scene, &recording);
+        comparison.enter("it", Claim::Exact, &answers);
+        let report = comparison.finish();
+        assert_eq!((report.queries, report.blocked), (queries.len() as u64, 0));
+        assert!(report.failure().is_none() && report.disagreements.is_empty());
+    }
 }
 
 #[test]

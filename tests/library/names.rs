@@ -3,14 +3,19 @@
 use std::fmt::{Debug, Display};
 use std::str::FromStr;
 
+use serde::Serialize;
 use umbra::exact::Verdict;
 use umbra::occlusion::{Backend, Test};
 use umbra::render::Order;
-use umbra::shadow::Outcome;
+use umbra::shadow::{Combination, Outcome};
 
-fn read_back<T: Copy + Debug + Display + PartialEq + FromStr<Err: Debug>>(all: &[T]) {
+fn read_back<T>(all: &[T])
+where
+    T: Copy + Debug + Display + PartialEq + FromStr<Err: Debug> + Serialize,
+{
     for one in all {
         assert_eq!(one.to_string().parse::<T>().unwrap(), *one);
+        assert_eq!(serde_json::to_value(one).unwrap(), one.to_string());
     }
 }
 
@@ -19,6 +24,8 @@ fn names_read_back_and_others_are_refused_with_those_there_are() {
     read_back(&Backend::ALL);
     read_back(&Test::ALL);
     read_back(&Order::ALL);
+    let combinations = ["trace", "shaft", "shaft+light-buffer+cache-tree-tolerance"];
+    read_back(&combinations.map(|name| name.parse::<Combination>().unwrap()));
     let refused = "octree".parse::<Backend>().unwrap_err().to_string();
     assert_eq!(
         refused,

@@ -9,7 +9,7 @@ use umbra::glam::Vec3;
 use umbra::occlusion::{Backend, BuildOptions, Test, build};
 use umbra::render::{
     Film, OutputError, Picture, Progress, Rendered, Seen, Settings, SettingsError, Shown,
-    encode_picture, render, write_picture,
+    encode_picture, forecast, render, write_picture,
 };
 use umbra::shadow::Trace;
 
@@ -55,6 +55,24 @@ fn answers_of_a_light_that_is_not_there_are_not_shown() {
     assert!(rendered(&shown(0)).is_ok());
     let refused = rendered(&shown(99)).unwrap_err();
     assert_eq!(refused, SettingsError::Light { light: 99, lights: 1 });
+}
+
+#[test]
+fn what_makes_no_picture_has_no_forecast() {
+    let scene = scene();
+    let backend = build(Backend::Brute, Test::Exact, &scene.triangles, &BuildOptions::default());
+    let backend = backend.unwrap();
+    let sound = Settings { width: 64, height: 48, ..Settings::default() };
+    assert!(forecast(&scene, &*backend, &sound).is_ok());
+    for unsound in [
+        Settings { width: 0, height: 0, ..sound },
+        Settings { width: u32::MAX, height: u32::MAX, ..sound },
+        Settings { samples: 0, ..sound },
+        Settings { depth: 200, ..sound },
+    ] {
+        let expected = unsound.check().unwrap_err();
+        assert_eq!(forecast(&scene, &*backend, &unsound), Err(expected), "{unsound:?}");
+    }
 }
 
 #[test]

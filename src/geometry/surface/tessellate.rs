@@ -26,9 +26,10 @@ impl Resolution {
     /// sides, and each gets half of the tolerance.
     ///
     /// # Panics
-    /// If the surface has a cusp, which no bound holds.
+    /// If the surface has a cusp, which no bound holds; if the tolerance is not above 0, which none but flat surfaces keep.
     #[must_use]
     pub fn for_tolerance(surface: &impl Surface, tolerance: f64) -> Self {
+        assert!(tolerance > 0.0, "no resolution keeps a tolerance of {tolerance}");
         let bounds = surface.second_derivatives();
         let cells = |bound: f64| {
             assert!(bound.is_finite(), "a surface with a cusp has no resolution for a tolerance");

@@ -118,6 +118,14 @@ fn counts_are_those_of_the_triangles_made() {
 }
 
 #[test]
+fn a_tolerance_that_is_not_above_zero_is_refused() {
+    for tolerance in [0.0, -0.01, f64::NAN] {
+        let resolution = || Resolution::for_tolerance(&ball(), tolerance);
+        assert!(std::panic::catch_unwind(resolution).is_err(), "{tolerance}");
+    }
+}
+
+#[test]
 fn triangles_stay_within_the_tolerance() {
     fn check(surface: &impl Surface, tolerance: f64) {
         let resolution = Resolution::for_tolerance(surface, tolerance);

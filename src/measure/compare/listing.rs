@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::report::bits;
 use super::{Disagreement, Report};
 use crate::exact::Verdict;
+use crate::measure::bits;
 
 /// The first line of the CSV.
 const COLUMNS: &str = "contender,pixel_x,pixel_y,light,kind,said,exact,triangle,explained,origin_x,origin_y,origin_z,direction_x,direction_y,direction_z,end,bits";

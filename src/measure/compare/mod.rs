@@ -308,7 +308,8 @@ impl<'a> Comparison<'a> {
         let mut contradicted = oracle_contradicts.count() as u64;
 
         let triangles = &self.scene.triangles;
-        let affordable = (BRUTE_TESTS / triangles.len()).clamp(1, all);
+        // At least one where there are any; there may be neither queries nor triangles.
+        let affordable = (BRUTE_TESTS / triangles.len().max(1)).max(1).min(all);
         let engine = brute(Test::Exact, Arithmetic::of_this_cpu(), triangles);
         let spread = (0..affordable).map(|place| place * all / affordable);
         let asked: Vec<usize> =

@@ -5,6 +5,7 @@ use serde::{Serialize, Serializer};
 use super::Claim;
 use crate::exact::Verdict;
 use crate::geometry::{Ray, TriangleId};
+use crate::measure::bits;
 use crate::measure::wilson::PerMillion;
 
 /// How an answer is wrong.
@@ -174,14 +175,6 @@ impl Report {
             "{unexplained} answers of {name} lie outside its bounds: nothing explains them"
         ))
     }
-}
-
-/// Origin, direction and end, as the bits of their f32: eight hexadecimal digits each.
-pub(super) fn bits(ray: &Ray) -> String {
-    let [x, y, z] = ray.origin.to_array();
-    let [dx, dy, dz] = ray.direction.to_array();
-    let words = [x, y, z, dx, dy, dz, ray.end].map(|value| format!("{:08x}", value.to_bits()));
-    words.join(" ")
 }
 
 fn serialize_verdict<S: Serializer>(verdict: &Verdict, serializer: S) -> Result<S::Ok, S::Error> {

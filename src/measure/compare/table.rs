@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::{Report, Row};
-use crate::measure::grouped;
 use crate::measure::wilson::PerMillion;
+use crate::measure::{grouped, told};
 
 /// Widths of the columns after the name.
 const WIDTHS: [usize; 6] = [12, 26, 26, 14, 16, 13];
@@ -65,16 +65,7 @@ fn line(f: &mut fmt::Formatter<'_>, name: usize, first: &str, cells: &[String; 6
     writeln!(f)
 }
 
-/// A share and its interval, with three digits.
+/// A share and its interval.
 fn share(share: &PerMillion) -> String {
-    format!("{} ({} to {})", digits(share.share), digits(share.low), digits(share.high))
-}
-
-fn digits(value: f64) -> String {
-    match value {
-        0.0 => "0".to_owned(),
-        0.0..10.0 => format!("{value:.2}"),
-        10.0..100.0 => format!("{value:.1}"),
-        _ => grouped(value.round() as u64),
-    }
+    format!("{} ({} to {})", told(share.share), told(share.low), told(share.high))
 }

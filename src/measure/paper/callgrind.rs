@@ -8,8 +8,6 @@
 //!
 //! The simulated processor has AVX2, and no AVX-512: there the kernels for AVX2 are measured.
 
-#![allow(unsafe_code)]
-
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::{fs, io};

@@ -4,12 +4,8 @@
 //! The paper counted cycles of an idealised processor with *pixie*, which are the same in every run.
 //! Instructions come nearest to that. Times become repeatable by repetition only: see `lockstep`.
 
-#![allow(unsafe_code)]
-
-use std::ffi::{c_int, c_long};
 use std::fs::File;
 use std::io::{self, Read};
-use std::os::fd::FromRawFd;
 
 use serde::Serialize;
 
@@ -53,7 +49,7 @@ impl Meter {
     /// Starts counting what this thread does, by the system's counter if there is one.
     #[must_use]
     pub fn start() -> Self {
-        open_counter().map_or(Self::Clock, Self::Counter)
+        counter::open().map_or(Self::Clock, Self::Counter)
     }
 
     /// What is counted.
@@ -85,92 +81,123 @@ fn read_counter(mut counter: &File) -> io::Result<u64> {
     Ok(u64::from_ne_bytes(count))
 }
 
-/// The first version of the system's `perf_event_attr`.
-#[repr(C)]
-#[derive(Default)]
-struct Attributes {
-    kind: u32,
-    size: u32,
-    config: u64,
-    sample_period: u64,
-    sample_type: u64,
-    read_format: u64,
-    flags: u64,
-    wakeup_events: u32,
-    breakpoint_type: u32,
-    config1: u64,
-}
-
-const HARDWARE: u32 = 0;
-const INSTRUCTIONS: u64 = 1;
-const EXCLUDE_KERNEL: u64 = 1 << 5;
-const EXCLUDE_HYPERVISOR: u64 = 1 << 6;
-const CLOSE_ON_EXEC: c_long = 1 << 3;
-
-#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
-const PERF_EVENT_OPEN: Option<c_long> = Some(298);
-#[cfg(all(target_os = "linux", target_arch = "aarch64"))]
-const PERF_EVENT_OPEN: Option<c_long> = Some(241);
-#[cfg(not(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64"))))]
-const PERF_EVENT_OPEN: Option<c_long> = None;
-
-#[repr(C)]
-#[derive(Default)]
-struct TimeSpec {
-    seconds: i64,
-    nanoseconds: c_long,
-}
-
-const PROCESS_CPU_TIME: c_int = 2;
-const THREAD_CPU_TIME: c_int = 3;
-
-unsafe extern "C" {
-    fn syscall(number: c_long, ...) -> c_long;
-    fn clock_gettime(clock: c_int, time: *mut TimeSpec) -> c_int;
-}
-
-/// A counter of the calling thread's instructions, if the system has one and it counts.
-fn open_counter() -> Option<File> {
-    let number = PERF_EVENT_OPEN?;
-    let attributes = Attributes {
-        kind: HARDWARE,
-        size: size_of::<Attributes>() as u32,
-        config: INSTRUCTIONS,
-        flags: EXCLUDE_KERNEL | EXCLUDE_HYPERVISOR,
-        ..Attributes::default()
-    };
-    let (this_thread, any_processor, no_group): (c_long, c_long, c_long) = (0, -1, -1);
-    // SAFETY: the call reads `size` bytes of the attributes, which live until it returns.
-    let descriptor = unsafe {
-        let attributes: *const Attributes = &raw const attributes;
-        syscall(number, attributes, this_thread, any_processor, no_group, CLOSE_ON_EXEC)
-    };
-    let descriptor = c_int::try_from(descriptor).ok().filter(|&descriptor| descriptor >= 0)?;
-    // SAFETY: the system just opened it, and nobody else knows it.
-    let counter = unsafe { File::from_raw_fd(descriptor) };
-    // Some virtual machines hand out counters that stand still.
-    let before = read_counter(&counter).ok()?;
-    (read_counter(&counter).ok()? > before).then_some(counter)
-}
-
-/// Nanoseconds that the calling thread ran.
+/// Nanoseconds that the calling thread ran. They are known on Linux; elsewhere it is the time that went by.
 #[must_use]
 pub fn thread_time() -> u64 {
-    time(THREAD_CPU_TIME)
+    clock::thread()
 }
 
-/// Nanoseconds that all threads of this process ran, together.
+/// Nanoseconds that all threads of this process ran, together. They are known on Linux; elsewhere it is the time that went by.
 #[must_use]
 pub fn process_time() -> u64 {
-    time(PROCESS_CPU_TIME)
+    clock::process()
 }
 
-fn time(clock: c_int) -> u64 {
-    let mut time = TimeSpec::default();
-    // SAFETY: the call writes one `timespec`, whose layout on 64-bit systems this is.
-    let outcome = unsafe { clock_gettime(clock, &raw mut time) };
-    assert_eq!(outcome, 0, "these clocks are to be had since Linux 2.6.12");
-    time.seconds as u64 * 1_000_000_000 + time.nanoseconds as u64
+#[cfg(target_os = "linux")]
+mod clock {
+    use rustix::time::{ClockId, clock_gettime};
+
+    pub fn thread() -> u64 {
+        time(ClockId::ThreadCPUTime)
+    }
+
+    pub fn process() -> u64 {
+        time(ClockId::ProcessCPUTime)
+    }
+
+    fn time(clock: ClockId) -> u64 {
+        let time = clock_gettime(clock);
+        time.tv_sec as u64 * 1_000_000_000 + time.tv_nsec as u64
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+mod clock {
+    use std::{sync::LazyLock, time::Instant};
+
+    /// When it was first asked.
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+
+    pub fn thread() -> u64 {
+        START.elapsed().as_nanos() as u64
+    }
+
+    pub use thread as process;
+}
+
+/// The system's counter of instructions.
+#[cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64")))]
+mod counter {
+    use std::ffi::{c_int, c_long};
+    use std::fs::File;
+    use std::os::fd::FromRawFd;
+
+    use super::read_counter;
+
+    /// The first version of the system's `perf_event_attr`.
+    #[repr(C)]
+    #[derive(Default)]
+    struct Attributes {
+        kind: u32,
+        size: u32,
+        config: u64,
+        sample_period: u64,
+        sample_type: u64,
+        read_format: u64,
+        flags: u64,
+        wakeup_events: u32,
+        breakpoint_type: u32,
+        config1: u64,
+    }
+
+    const HARDWARE: u32 = 0;
+    const INSTRUCTIONS: u64 = 1;
+    const EXCLUDE_KERNEL: u64 = 1 << 5;
+    const EXCLUDE_HYPERVISOR: u64 = 1 << 6;
+    const CLOSE_ON_EXEC: c_long = 1 << 3;
+    const PERF_EVENT_OPEN: c_long = if cfg!(target_arch = "x86_64") { 298 } else { 241 };
+
+    unsafe extern "C" {
+        fn syscall(number: c_long, ...) -> c_long;
+    }
+
+    /// A counter of the calling thread's instructions, if there is one and it counts.
+    pub fn open() -> Option<File> {
+        let attributes = Attributes {
+            kind: HARDWARE,
+            size: size_of::<Attributes>() as u32,
+            config: INSTRUCTIONS,
+            flags: EXCLUDE_KERNEL | EXCLUDE_HYPERVISOR,
+            ..Attributes::default()
+        };
+        let (this_thread, any_processor, no_group): (c_long, c_long, c_long) = (0, -1, -1);
+        // SAFETY: the call reads `size` bytes of the attributes, which live until it returns.
+        let descriptor = unsafe {
+            let attributes: *const Attributes = &raw const attributes;
+            syscall(
+                PERF_EVENT_OPEN,
+                attributes,
+                this_thread,
+                any_processor,
+                no_group,
+                CLOSE_ON_EXEC,
+            )
+        };
+        let descriptor = c_int::try_from(descriptor).ok().filter(|&descriptor| descriptor >= 0)?;
+        // SAFETY: the system just opened it, and nobody else knows it.
+        let counter = unsafe { File::from_raw_fd(descriptor) };
+        // Some virtual machines hand out counters that stand still.
+        let before = read_counter(&counter).ok()?;
+        (read_counter(&counter).ok()? > before).then_some(counter)
+    }
+}
+
+/// We know none elsewhere.
+#[cfg(not(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64"))))]
+mod counter {
+    pub fn open() -> Option<std::fs::File> {
+        None
+    }
 }
 
 #[cfg(test)]

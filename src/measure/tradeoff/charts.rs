@@ -1,11 +1,12 @@
 //! The charts of a report.
 
-use super::{EnginePoint, Report, SamplesPoint, TessellationPoint, Timing, told};
+use super::{EnginePoint, Report, SamplesPoint, TessellationPoint, Timing};
 use crate::measure::report::{
     Chart, Dimension, Hue, LogAxis, Look, Mark, Shape, bytes, document, tick_label,
 };
+use crate::measure::told;
 use crate::occlusion::{Backend, Test};
-use crate::shadow::Method;
+use crate::shadow::Combination;
 
 /// Width of the SVG document.
 const WIDTH: f64 = 900.0;
@@ -25,49 +26,49 @@ pub fn plot(report: &Report) -> String {
 }
 
 /// A backend's hue.
-fn hue_of(backend: &str) -> Hue {
-    let hues = [
-        (Backend::Grid, Hue::Blue),
-        (Backend::Embree, Hue::Vermillion),
-        (Backend::Bvh2, Hue::Green),
-        (Backend::Cwbvh, Hue::Purple),
-        (Backend::Brute, Hue::Orange),
-    ];
-    hues.iter().find(|(other, _)| other.name() == backend).map_or(Hue::Ink, |(_, hue)| *hue)
+fn hue_of(backend: Backend) -> Hue {
+    match backend {
+        Backend::Grid => Hue::Blue,
+        Backend::Embree => Hue::Vermillion,
+        Backend::Bvh2 => Hue::Green,
+        Backend::Cwbvh => Hue::Purple,
+        Backend::Brute => Hue::Orange,
+    }
 }
 
 /// A test's shape.
-fn shape_of(test: &str) -> Shape {
-    let shapes = [
-        (Test::Exact, Shape::Circle),
-        (Test::Pluecker, Shape::Square),
-        (Test::Moller, Shape::Triangle),
-        (Test::Watertight, Shape::Diamond),
-    ];
-    shapes.iter().find(|(other, _)| other.name() == test).map_or(Shape::Bar, |(_, shape)| *shape)
+fn shape_of(test: Test) -> Shape {
+    match test {
+        Test::Exact => Shape::Circle,
+        Test::Pluecker => Shape::Square,
+        Test::Moller => Shape::Triangle,
+        Test::Watertight => Shape::Diamond,
+    }
+}
+
+/// Whether nothing stands before the engine.
+fn is_alone(point: &EnginePoint) -> bool {
+    point.method == Combination::default()
 }
 
 /// How a contender looks in charts and tables.
 pub(super) fn look_of(point: &EnginePoint) -> Look {
-    let filled = point.method == Method::Trace.name();
-    Look { hue: hue_of(point.backend), shape: shape_of(point.test), filled }
+    Look { hue: hue_of(point.backend), shape: shape_of(point.test), filled: is_alone(point) }
 }
 
 /// What hues, shapes and filling mean, of those that occur.
 fn legend(points: &[EnginePoint]) -> Vec<(Look, String)> {
-    let ink = |shape, filled| Look { hue: Hue::Ink, shape, filled };
-    let backends = Backend::ALL.map(Backend::name).into_iter();
-    let tests = Test::ALL.map(Test::name).into_iter().rev();
-    let mut legend: Vec<_> = backends
-        .filter(|name| points.iter().any(|point| point.backend == *name))
-        .map(|name| {
-            let look = Look { hue: hue_of(name), shape: Shape::Bar, filled: true };
-            (look, name.to_owned())
-        })
-        .collect();
-    let tests = tests.filter(|name| points.iter().any(|point| point.test == *name));
-    legend.extend(tests.map(|name| (ink(shape_of(name), true), name.to_owned())));
-    if points.iter().any(|point| point.method != Method::Trace.name()) {
+    let look = |hue, shape, filled| Look { hue, shape, filled };
+    let ink = |shape, filled| look(Hue::Ink, shape, filled);
+    let occurs = |is_such: &dyn Fn(&EnginePoint) -> bool| points.iter().any(is_such);
+    let backends = Backend::ALL.into_iter();
+    let backends = backends.filter(|backend| occurs(&|point| point.backend == *backend));
+    let tests = Test::ALL.into_iter().rev();
+    let tests = tests.filter(|test| occurs(&|point| point.test == *test));
+    let hues = backends.map(|one| (look(hue_of(one), Shape::Bar, true), one.to_string()));
+    let shapes = tests.map(|one| (ink(shape_of(one), true), one.to_string()));
+    let mut legend: Vec<_> = hues.chain(shapes).collect();
+    if points.iter().any(|point| !is_alone(point)) {
         legend.push((ink(Shape::Bar, true), "filled: engine alone".to_owned()));
         legend.push((ink(Shape::Bar, false), "hollow: behind a shadow method".to_owned()));
     }
@@ -109,7 +110,7 @@ fn chart(
 ) -> Chart {
     let points = &report.engines;
     let is_wrongness = lane > 0.0;
-    let exact = (0..points.len()).filter(|&place| points[place].test == Test::Exact.name());
+    let exact = (0..points.len()).filter(|&place| points[place].test == Test::Exact);
     let fastest_exact =
         exact.max_by(|&a, &b| speed(&points[a]).median.total_cmp(&speed(&points[b]).median));
     let marks = points.iter().enumerate().map(|(place, point)| Mark {
@@ -256,10 +257,8 @@ mod tests {
 
     #[test]
     fn no_two_backends_share_a_hue_and_no_two_tests_a_shape() {
-        let hues: std::collections::HashSet<_> =
-            Backend::ALL.map(|backend| hue_of(backend.name())).into_iter().collect();
-        let shapes: std::collections::HashSet<_> =
-            Test::ALL.map(|test| shape_of(test.name())).into_iter().collect();
+        let hues: std::collections::HashSet<_> = Backend::ALL.map(hue_of).into_iter().collect();
+        let shapes: std::collections::HashSet<_> = Test::ALL.map(shape_of).into_iter().collect();
         assert_eq!((hues.len(), shapes.len()), (Backend::ALL.len(), Test::ALL.len()));
         assert!(!hues.contains(&Hue::Ink) && !shapes.contains(&Shape::Bar));
     }

@@ -65,7 +65,7 @@ pub fn csv(report: &Report) -> String {
         let mut row = Row::new("engines", &point.name);
         row.set("backend", point.backend);
         row.set("test", point.test);
-        row.set("method", &point.method);
+        row.set("method", point.method);
         row.set("mrays_per_second", point.mrays_per_second.median);
         row.set("mrays_per_second_least", point.mrays_per_second.least);
         row.set("mrays_per_second_greatest", point.mrays_per_second.greatest);

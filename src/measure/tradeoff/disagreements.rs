@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::EnginePoint;
 use crate::exact::Verdict;
 use crate::geometry::Ray;
+use crate::measure::bits;
 use crate::measure::recording::Recording;
 
 /// How many are listed.
@@ -73,10 +74,4 @@ pub(super) fn worst(
         }
     };
     numbers.into_iter().map(describe).collect()
-}
-
-/// Seven numbers in hexadecimal.
-fn bits(ray: &Ray) -> String {
-    let parts = ray.origin.to_array().into_iter().chain(ray.direction.to_array()).chain([ray.end]);
-    parts.map(|part| format!("{:08x}", part.to_bits())).collect::<Vec<_>>().join(" ")
 }

@@ -19,9 +19,10 @@ use crate::measure::contender::Contender;
 use crate::measure::recording::Recording;
 use crate::measure::truth::Truths;
 use crate::measure::wilson::PerMillion;
-use crate::occlusion::Test;
+use crate::occlusion::{Backend, Test};
 use crate::render::Progress;
 use crate::scene::Scene;
+use crate::shadow::Combination;
 
 /// One contender as a point of the plane of speed and accuracy.
 #[derive(Clone, Debug, Serialize)]
@@ -29,11 +30,11 @@ pub struct EnginePoint {
     /// Its name.
     pub name: String,
     /// The engine.
-    pub backend: &'static str,
+    pub backend: Backend,
     /// The triangle test.
-    pub test: &'static str,
+    pub test: Test,
     /// What stands before the engine.
-    pub method: String,
+    pub method: Combination,
     /// Million queries a second, when everything is built.
     pub mrays_per_second: Timing,
     /// The same with everything that was built for them, the queries of one picture together.
@@ -71,7 +72,7 @@ impl EnginePoint {
     /// Whether it breaks what the exact test promises.
     #[must_use]
     pub fn breaks_its_promise(&self) -> bool {
-        !self.steady || (self.test == Test::Exact.name() && !self.differing.is_empty())
+        !self.steady || (self.test == Test::Exact && !self.differing.is_empty())
     }
 }
 
@@ -171,9 +172,9 @@ impl EnginePoint {
         let timing = |of: &dyn Fn(&Turn) -> f64| Timing::of(turns.iter().map(of));
         Self {
             name: contender.to_string(),
-            backend: contender.backend.name(),
-            test: contender.test.name(),
-            method: contender.method.to_string(),
+            backend: contender.backend,
+            test: contender.test,
+            method: contender.method,
             mrays_per_second: timing(&|turn| 1e-6 * rays / turn.warm),
             mrays_per_second_with_build: timing(&|turn| 1e-6 * rays / (turn.build + turn.cold)),
             build_seconds: timing(&|turn| turn.build),

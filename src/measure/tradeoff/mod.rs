@@ -23,7 +23,6 @@ use serde::Serialize;
 
 use super::MeasureError;
 use super::contender::Contender;
-use super::grouped;
 use super::recording::Recording;
 use crate::render::{Film, Progress, Settings};
 use crate::scene::{Scene, builtin};
@@ -168,16 +167,6 @@ impl Report {
     }
 }
 
-/// A share per million as it is told: rare ones in hundredths, many as whole numbers.
-fn told(share: f64) -> String {
-    match share {
-        0.0 => "0".to_owned(),
-        ..10.0 => format!("{share:.2}"),
-        ..100.0 => format!("{share:.1}"),
-        _ => grouped(share.round() as u64),
-    }
-}
-
 /// Whether the scene is built in and has surfaces that triangles only come near to.
 fn is_curved(scene: &Scene) -> bool {
     builtin::NAMES.contains(&&*scene.name) && builtin::deviation(&scene.name, 1.0).is_some()
@@ -272,13 +261,4 @@ fn processor() -> String {
         .lines()
         .find_map(|line| line.strip_prefix("model name")?.split_once(':'))
         .map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn shares_are_told_with_three_digits_or_so() {
-        let told = [0.0, 0.314, 9.5, 21.05, 36385.9].map(super::told);
-        assert_eq!(told, ["0", "0.31", "9.50", "21.1", "36,386"]);
-    }
 }

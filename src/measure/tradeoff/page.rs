@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::charts::{engine_charts, look_of, samples_chart, tessellation_charts};
-use super::{Disagreement, EnginePoint, Report, Timing, told};
-use crate::measure::grouped;
+use super::{Disagreement, EnginePoint, Report, Timing};
 use crate::measure::report::{Cell, Page, Shown, bytes};
+use crate::measure::{grouped, told};
+use crate::occlusion::Test;
 
 /// The report as a page that is one file; `command` is what made it.
 #[must_use]
@@ -50,7 +51,7 @@ fn findings(report: &Report) -> Vec<String> {
     if let Some(best) = faultless.max_by(by_speed) {
         findings.push(format!("Fastest without a wrong answer: {}.", describe(best)));
     }
-    let certain = report.engines.iter().filter(|point| point.test == "exact");
+    let certain = report.engines.iter().filter(|point| point.test == Test::Exact);
     if let Some(best) = certain.max_by(by_speed) {
         findings.push(format!("Fastest that cannot be wrong: {}.", describe(best)));
     }

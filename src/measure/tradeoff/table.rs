@@ -2,9 +2,9 @@
 
 use std::fmt::{self, Write};
 
-use super::{EnginePoint, Report, SamplesPoint, TessellationPoint, told};
-use crate::measure::grouped;
+use super::{EnginePoint, Report, SamplesPoint, TessellationPoint};
 use crate::measure::report::bytes;
+use crate::measure::{grouped, told};
 
 /// The tables of all trades: engines by speed, the front marked with a star.
 #[must_use]

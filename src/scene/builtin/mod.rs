@@ -42,7 +42,7 @@ pub fn view(name: &str) -> Option<View> {
     NAMES.contains(&name).then_some(View { width, height, samples_per_side })
 }
 
-/// The scene with the paper's number of triangles; `None` if no scene has that name.
+/// The scene with the paper's number of triangles; `None` if no scene has that name or memory does not hold it: [`draft_at`] says which.
 #[must_use]
 pub fn draft(name: &str) -> Option<Draft> {
     draft_at(name, 1.0).ok()

@@ -4,7 +4,7 @@
 mod glb;
 mod obj;
 
-use std::{io, ops::Range, path::Path};
+use std::{collections::HashSet, io, ops::Range, path::Path};
 
 use glam::Vec3;
 
@@ -62,11 +62,13 @@ fn runs(scene: &Scene) -> Vec<Run> {
 
 /// A name for each material: its own, made different from those before it.
 fn material_names(scene: &Scene) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for (index, material) in scene.materials.iter().enumerate() {
+    let mut taken = HashSet::new();
+    let names = scene.materials.iter().enumerate().map(|(index, material)| {
         let name = material.name.split_whitespace().collect::<Vec<_>>().join("_");
-        let unique = !name.is_empty() && !names.contains(&name);
-        names.push(if unique { name } else { format!("{name}_{index}") });
-    }
-    names
+        let own = Some(name.clone()).filter(|name| !name.is_empty());
+        let numbered = (index..).map(|number| format!("{name}_{number}"));
+        let mut names = own.into_iter().chain(numbered);
+        names.find(|name| taken.insert(name.clone())).expect("there is always another number")
+    });
+    names.collect()
 }
