@@ -92,7 +92,7 @@ fn morph_targets_that_do_not_fit_are_refused() {
     };
     let told = "a.glb: a primitive has 3 positions, but 2 in a morph target; export the file again";
     assert_eq!(refused(json!([1])), told);
-    let told = "a.glb: a mesh has 2 weights for 1 morph targets; give one for each";
+    let told = "a.glb: a mesh has 2 weights for 1 morph target; give one for each";
     assert_eq!(refused(json!([1, 2])), told);
 }
 

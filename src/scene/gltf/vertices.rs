@@ -9,7 +9,7 @@ use ::gltf::json::{
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::{Problem, container::Container, elements::Elements};
-use crate::scene::{DraftTriangle, placement::Placement};
+use crate::scene::{DraftTriangle, placement::Placement, words::counted};
 
 /// How the vertices of a mesh come into the world.
 pub(super) struct Pose<'a> {
@@ -63,9 +63,9 @@ impl<'a> Vertices<'a> {
         // Without any, all are 0.
         if !pose.weights.is_empty() && pose.weights.len() != stored.len() {
             return Err(format!(
-                "a mesh has {} weights for {} morph targets; give one for each",
-                pose.weights.len(),
-                stored.len()
+                "a mesh has {} for {}; give one for each",
+                counted(pose.weights.len() as u64, "weight", "weights"),
+                counted(stored.len() as u64, "morph target", "morph targets")
             ));
         }
         for (&weight, target) in pose.weights.iter().zip(stored) {
