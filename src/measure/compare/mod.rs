@@ -13,6 +13,7 @@
 //! | an engine of ours, another test | that test says the same when asked of every triangle, with no engine |
 //! | `rtcOccluded1` | it lies between L and U, which are computed bit for bit; this is asked of right answers too |
 //! | the same, default mode, high quality | above, L is proven by rounding alone: spatial splits clip the boxes |
+//! | the same, with verdicts before it | as above; a right answer needs no bound, for verdicts give the truth |
 //! | `rtcOccluded4`, `8`, `16` | a forward error bound allows it: "clear" if no triangle and its box are met by more than rounding, "blocked" if some triangle is not missed by more than rounding |
 //!
 //! The bound of packets is as wide as f32 is rough: it decides all but a few ordinary rays in a thousand, but of
@@ -226,14 +227,15 @@ impl<'a> Comparison<'a> {
     ) -> Option<Disagreement> {
         let truth = self.truth[query];
         let is_right = blocked == truth.is_blocked();
-        if is_right && !judge.judges_all() {
+        if is_right && !judge.judges_right_ones() {
             return None;
         }
         let ray = self.ray(query);
-        let is_free = truth.verdict == Verdict::Tie && !judge.is_exact();
-        if is_free && !judge.judges_all() {
+        let is_tie = truth.verdict == Verdict::Tie;
+        if is_tie && !judge.judges_ties() {
             return None;
         }
+        let is_free = is_tie && !judge.is_exact();
         let ruling = judge.rule(ray, blocked);
         let kind = match (is_right || is_free, blocked) {
             (true, _) if ruling.within => return None,
