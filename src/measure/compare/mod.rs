@@ -298,7 +298,7 @@ impl<'a> Comparison<'a> {
     /// Puts the disputed queries, and a sample, to the oracle and to brute force.
     fn check(&self, disputed: &[usize]) -> (BTreeMap<usize, Truth>, Checks) {
         let all = self.truth.len();
-        let sample = (0..all).step_by(all.div_ceil(ORACLE_SAMPLE).max(1));
+        let sample = spread(ORACLE_SAMPLE.min(all), all);
         let asked: Vec<usize> = disputed.iter().copied().chain(sample).collect();
         let verdicts: BTreeMap<usize, Truth> = asked
             .into_par_iter()
@@ -313,9 +313,9 @@ impl<'a> Comparison<'a> {
         // At least one where there are any; there may be neither queries nor triangles.
         let affordable = (BRUTE_TESTS / triangles.len().max(1)).max(1).min(all);
         let engine = brute(Test::Exact, Arithmetic::of_this_cpu(), triangles);
-        let spread = (0..affordable).map(|place| place * all / affordable);
+        let sample = spread(affordable, all);
         let asked: Vec<usize> =
-            disputed.iter().copied().take(affordable).chain(spread).take(affordable).collect();
+            disputed.iter().copied().take(affordable).chain(sample).take(affordable).collect();
         contradicted += asked
             .par_iter()
             .filter(|query| {
@@ -325,4 +325,9 @@ impl<'a> Comparison<'a> {
             .count() as u64;
         (verdicts, Checks { by_oracle, by_brute_force: asked.len() as u64, contradicted })
     }
+}
+
+/// So many of all places, evenly.
+fn spread(few: usize, all: usize) -> impl Iterator<Item = usize> {
+    (0..few).map(move |place| place * all / few)
 }
