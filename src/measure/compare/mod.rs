@@ -43,7 +43,7 @@ use bounds::{Judge, brute};
 pub use report::{Checks, Disagreement, Kind, Report, Row};
 
 use super::contender::Contender;
-use super::recording::Recording;
+use super::recording::{NoQueries, Recording};
 use super::truth::{Truth, Truths};
 use crate::exact::Verdict;
 use crate::geometry::Ray;
@@ -66,11 +66,9 @@ pub enum CompareError {
         "a comparison needs at least two contenders, and these are {0}; name more backends, tests, methods or Embree variants"
     )]
     Few(usize),
-    /// No light faces anything that the camera sees.
-    #[error(
-        "{0}: no shadow query is asked in this picture; give the scene another camera or light"
-    )]
-    NoQueries(String),
+    /// Nothing to answer.
+    #[error(transparent)]
+    NoQueries(#[from] NoQueries),
     /// The queries are not this scene's.
     #[error(
         "{scene}: a query asks about light {light}, and there are {lights}, counted from 0; give a recording of this scene"
@@ -140,9 +138,7 @@ pub fn compare(
     if contenders.len() < 2 {
         return Err(CompareError::Few(contenders.len()));
     }
-    if recording.queries().is_empty() {
-        return Err(CompareError::NoQueries(scene.name.clone()));
-    }
+    recording.check_asked(&scene.name)?;
     let lights = scene.lights.len();
     if let Some((light, _)) = recording.runs().find(|(light, _)| *light >= lights) {
         return Err(CompareError::NoLight { scene: scene.name.clone(), light, lights });
