@@ -15,7 +15,7 @@ use super::outputs::{print_beside_files, write_json};
 use super::progress::with_rate;
 use crate::exact::adversary::Class;
 use crate::exact::campaign::{Summary, campaign};
-use crate::measure::grouped;
+use crate::measure::{count, grouped};
 
 /// Queries of a class between two looks at the clock: a second's work at most.
 const BLOCK: u64 = 100_000;
@@ -88,7 +88,8 @@ impl Certify {
         match all.wrong {
             0 => Ok(()),
             wrong => {
-                Err(Failure::Comparison(format!("{wrong} of {} answers are wrong", all.queries)))
+                let answers = count(all.queries, "answer");
+                Err(Failure::Comparison(format!("wrong: {} of {answers}", grouped(wrong))))
             }
         }
     }

@@ -7,11 +7,12 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::numbers::{count, positive, whole};
+use super::numbers::{positive, whole};
 use super::options::{Built, EngineOptions, MOST_DEPTH, load_scene, parse_size};
 use super::outputs::{Outputs, check_outputs};
 use super::progress::with_bar;
 use super::shadows::ShadowOptions;
+use crate::measure::{count, grouped};
 use crate::render::{
     Film, MOST_SAMPLES, Order, Picture, Progress, Rendered, Settings, Shown, Statistics,
     encode_picture, forecast, render,
@@ -289,8 +290,8 @@ impl Report<'_> {
             self.test,
             self.shadows,
             count(rays.total(), "ray"),
-            rays.shadow,
-            self.counts.shadows.blocked,
+            grouped(rays.shadow),
+            grouped(self.counts.shadows.blocked),
             self.render_seconds,
             rays.total() as f64 / self.render_seconds / 1e6,
             self.load_seconds,

@@ -377,7 +377,7 @@ fn numbers_of_materials_that_make_no_sense_are_clamped_with_a_note() {
 #[test]
 fn corners_beyond_the_last_whole_triangle_are_noted() {
     let scene = loaded(|document| document["accessors"][1]["count"] = json!(4));
-    let told = "a primitive has 4 corners, not three for each triangle: the last 1 are left out";
+    let told = "a primitive has 4 corners, not three for each triangle: the last is left out";
     assert_eq!(scene.triangles.len(), 1);
     assert!(scene.notes.iter().any(|note| note == told), "{:?}", scene.notes);
 }

@@ -15,11 +15,11 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::numbers::count;
 use super::options::{Built, EngineOptions, load_scene};
 use super::outputs::{Outputs, STANDARD_OUTPUT, check_outputs, unprinted};
 use super::progress::with_rate;
 use crate::geometry::Ray;
+use crate::measure::{count, grouped};
 use crate::occlusion::{Occlusion, Tally};
 use crate::whole_file::WholeFile;
 use csv::BadLine;
@@ -144,7 +144,7 @@ impl Query {
             self.engine.backend,
             self.engine.test(),
             count(counts.rows, "row"),
-            counts.blocked,
+            grouped(counts.blocked),
             rows_per_second / 1e6,
         );
         if counts.invalid > 0 {

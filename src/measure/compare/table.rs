@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::{Report, Row};
 use crate::measure::wilson::PerMillion;
-use crate::measure::{grouped, told};
+use crate::measure::{count, grouped, told};
 
 /// Least widths of the columns after the name.
 const WIDTHS: [usize; 6] = [12, 26, 26, 14, 16, 13];
@@ -17,20 +17,20 @@ impl fmt::Display for Report {
         let Self { scene, width, height, .. } = self;
         writeln!(
             f,
-            "{scene}: {} triangles, {} lights, {width}x{height}; {} shadow queries: {} blocked, {} clear, {} ties",
-            grouped(self.triangles as u64),
-            self.lights,
-            grouped(self.queries),
+            "{scene}: {}, {}, {width}x{height}; {}: {} blocked, {} clear, {}",
+            count(self.triangles as u64, "triangle"),
+            count(self.lights as u64, "light"),
+            count(self.queries, "shadow query"),
             grouped(self.blocked),
             grouped(self.clear),
-            grouped(self.ties)
+            count(self.ties, "tie")
         )?;
         writeln!(
             f,
-            "the truth was checked by the oracle on {} of them and by brute force on {}: contradicted {} times",
+            "the truth was checked by the oracle on {} of them and by brute force on {}: contradicted {}",
             grouped(self.checks.by_oracle),
             grouped(self.checks.by_brute_force),
-            self.checks.contradicted
+            count(self.checks.contradicted, "time")
         )?;
         let name = self.contenders.iter().map(|row| row.name.len()).max().unwrap_or(0);
         let headings = [

@@ -167,9 +167,9 @@ impl Reader<'_> {
             }));
         }
         if mode(primitive)? == Mode::Triangles && !count.is_multiple_of(3) {
+            let last = if count % 3 == 1 { "the last is" } else { "the last 2 are" };
             self.note(&format!(
-                "a primitive has {count} corners, not three for each triangle: the last {} are left out",
-                count % 3
+                "a primitive has {count} corners, not three for each triangle: {last} left out"
             ));
         }
         Ok(())
