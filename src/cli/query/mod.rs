@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{Built, EngineOptions, load_scene};
+use super::options::{Built, EngineOptions, load_triangles};
 use super::outputs::{Outputs, STANDARD_OUTPUT, check_outputs, unprinted};
 use super::progress::with_rate;
 use crate::geometry::Ray;
@@ -123,7 +123,7 @@ impl Query {
 
     fn answer(&self, mut rows: Rows, outputs: &[&Path]) -> Result<(), Failure> {
         let start = Instant::now();
-        let scene = load_scene(&self.scene, outputs)?;
+        let scene = load_triangles(&self.scene, outputs)?;
         let load_seconds = start.elapsed().as_secs_f64();
         let Built { backend, seconds: build_seconds, .. } = self.engine.build(&scene)?;
         let start = Instant::now();
