@@ -407,7 +407,13 @@ fn the_list_has_every_disagreement_with_the_bits_of_its_ray() {
         assert_eq!((&bits[..], &decimals[..]), (&expected[..], &expected[..]));
     }
     let lines = report.listing(3);
-    assert!(lines.contains("more queries") && lines.contains("grid moller"), "{lines}");
+    assert!(lines.contains("more disputed queries;") && lines.contains("grid moller"), "{lines}");
+    let unlisted = report.listing(0);
+    let disputed: std::collections::BTreeSet<usize> =
+        report.disagreements.iter().map(|found| found.query).collect();
+    let told = format!("{} disputed queries, not listed; ", disputed.len());
+    assert!(disputed.len() < 1000 && unlisted.starts_with(&told), "{unlisted}");
+    assert_eq!(report.listing(1000).lines().count(), report.listing(999).lines().count());
 }
 
 fn compare_refused(arguments: &str, told: &[&str]) {
