@@ -57,11 +57,11 @@ fn write(text: &mut String, report: &Report) -> fmt::Result {
     }
     writeln!(text, "\n  samples    seconds  spread  picture error")?;
     report.samples.iter().try_for_each(|point| samples(text, point))?;
-    writeln!(
-        text,
-        "  picture error: root mean square, in 255 levels of the screen; surface error: in diagonals of the \
-         scene"
-    )
+    let surface = match report.tessellations[..] {
+        [] => "",
+        _ => "; surface error: in diagonals of the scene",
+    };
+    writeln!(text, "  picture error: root mean square, in 255 levels of the screen{surface}")
 }
 
 fn row(point: &EnginePoint) -> String {
