@@ -84,7 +84,6 @@ fn default_size(scene: &Path) -> (u32, u32) {
 
 #[derive(Serialize)]
 struct Report<'a> {
-    version: &'a str,
     scene: &'a str,
     triangles: usize,
     opaque_triangles: u32,
@@ -239,7 +238,6 @@ impl Render {
             report,
         };
         Report {
-            version: env!("CARGO_PKG_VERSION"),
             scene: &scene.name,
             triangles: scene.triangles.len(),
             opaque_triangles: scene.triangles.opaque_count(),

@@ -80,7 +80,6 @@ struct Counts {
 
 #[derive(Serialize)]
 struct Report<'a> {
-    version: &'a str,
     scene: &'a str,
     triangles: usize,
     opaque_triangles: u32,
@@ -156,7 +155,6 @@ impl Query {
         }
         let Some(stats) = &self.stats else { return files.finish() };
         let report = Report {
-            version: env!("CARGO_PKG_VERSION"),
             scene: &scene.name,
             triangles: scene.triangles.len(),
             opaque_triangles: scene.triangles.opaque_count(),
