@@ -49,8 +49,7 @@ fn contenders_with(triangles: impl Into<Arc<Triangles>>, tests: &[Test]) -> Vec<
     let mut contenders = Vec::new();
     for &backend in BACKENDS {
         for &test in tests {
-            let has = backend != Backend::Embree || matches!(test, Test::Pluecker | Test::Moller);
-            if has {
+            if backend.has(test) {
                 let engine = build(backend, test, &triangles, &BuildOptions::default())
                     .unwrap_or_else(|error| panic!("{error}"));
                 contenders.push(Contender { name: format!("{backend} {test}"), engine });

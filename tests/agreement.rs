@@ -16,7 +16,7 @@ use umbra::occlusion::{
 };
 use umbra::render::{Progress, RecordedQuery, Settings, render};
 use umbra::scene::{Scene, builtin, load};
-use umbra::shadow::Trace;
+use umbra::shadow::{Answer, Method, Path, Plan, SelfShadow, ShadowQuery, Trace, prepare};
 
 /// Brute force is asked too where the scene has at most this many triangles.
 const SMALL: usize = 70_000;
@@ -223,6 +223,7 @@ fn a_memory_in_front_of_embree_never_says_more_than_embree() {
     let triangles = Arc::new(mesh.iter().copied().collect::<Triangles>());
     for robust in [false, true] {
         let embree = embree(&triangles, robust, EmbreeOptions::default());
+        assert!(!embree.order().is_empty(), "whoever wants cells asks for them first");
         let mut random = Random(27);
         for i in 0..6000 {
             let ray = Aim::ALL[i % Aim::ALL.len()].ray(&mesh, &mut random);
@@ -238,5 +239,46 @@ fn a_memory_in_front_of_embree_never_says_more_than_embree() {
                 assert!(embree.occluder_in(occluder.cell, &ray, tally).is_none() || blocked);
             }
         }
+    }
+}
+
+#[test]
+fn cells_beside_embree_are_made_when_a_memory_needs_them_and_not_otherwise() {
+    let scene = umbra::scene::builtin::draft_at("jittered-dense", 0.05).unwrap().finish().unwrap();
+    let embree = embree(&scene.triangles, true, EmbreeOptions::default());
+    let bytes = embree.memory();
+    let queries: Vec<ShadowQuery> = {
+        let mut random = Random(28);
+        let bounds = scene.bounds();
+        let mut origin = || {
+            let half = 0.5 * (bounds.max - bounds.min);
+            bounds.min + half + half * random.in_cube(1.0)
+        };
+        let query = |_| {
+            let ray = scene.lights[0].shadow_ray(origin());
+            ShadowQuery { ray, path: Path::EYE, spawner: 0 }
+        };
+        (0..1000).map(query).collect()
+    };
+    let mut expected = vec![Answer::default(); queries.len()];
+    prepare(Method::Trace, &scene, &embree).unwrap().worker().answer(0, &queries, &mut expected);
+    let exclude = SelfShadow::Exclude;
+    let plans = [
+        (Plan { self_shadow: exclude, ..Method::Trace.into() }, false),
+        (Method::ObjectCache.into(), false),
+        (Plan { self_shadow: exclude, ..Method::ObjectCache.into() }, false),
+        (Method::VoxelCache.into(), true),
+        (Method::Woo.into(), true),
+    ];
+    for (plan, needs_cells) in plans {
+        let prepared = prepare(plan, &scene, &embree).unwrap();
+        let mut answers = vec![Answer::default(); queries.len()];
+        prepared.worker().answer(0, &queries, &mut answers);
+        assert_eq!(embree.has_cells(), needs_cells, "{plan:?}");
+        assert_eq!(embree.memory() > bytes, needs_cells, "{plan:?}");
+        let differ = |(answer, expected): (&Answer, &Answer)| answer.blocked != expected.blocked;
+        let different = answers.iter().zip(&expected).filter(|&pair| differ(pair)).count();
+        let leaves_out = plan.self_shadow == exclude;
+        assert!(different == 0 || leaves_out && different < 9, "{plan:?}: {different}");
     }
 }

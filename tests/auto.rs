@@ -256,11 +256,21 @@ fn unless_more_is_allowed_nothing_takes_more_than_embree_would() {
 
 #[test]
 fn auto_prepares_nothing_for_lights_that_are_not_asked_about() {
-    let scene = floor(3, 253);
-    let engine = engine(&scene, Backend::Grid, Test::Exact).unwrap();
-    let auto =
-        Auto::with_clock(Method::Trace, Test::Exact, &scene, &*engine, clock("ticks")).unwrap();
-    ask_some(&scene, &auto, 3, 200);
-    let lights: Vec<usize> = auto.choices().iter().map(|light| light.light).collect();
-    assert_eq!(lights, [0, 1, 2]);
+    // With room for light buffers, which are what takes room for a light.
+    let plan = Plan { budget: Some(1 << 30), ..Method::Trace.into() };
+    let [(few, buffers_of_few), (many, buffers_of_many)] = [0, 253].map(|below| {
+        let scene = floor(3, below);
+        let engine = engine(&scene, Backend::Grid, Test::Exact).unwrap();
+        // By this clock everybody leads by turns.
+        let auto = Auto::with_clock(plan, Test::Exact, &scene, &*engine, clock("leaps")).unwrap();
+        ask_some(&scene, &auto, 3, 2_000);
+        let choices = auto.choices();
+        let lights: Vec<usize> = choices.iter().map(|light| light.light).collect();
+        assert_eq!(lights, [0, 1, 2]);
+        let shares = choices.iter().flat_map(|light| &light.candidates);
+        let by_buffers = shares.filter(|share| share.method.contains("light-buffer"));
+        (auto.memory(), by_buffers.map(|share| share.queries).sum::<u64>())
+    });
+    assert_eq!(few, many);
+    assert!(buffers_of_few > 0 && buffers_of_few == buffers_of_many, "{buffers_of_few}");
 }

@@ -8,7 +8,9 @@ use common::{Aim, Random, soup, sphere};
 use glam::Vec3;
 use umbra::geometry::lanes::Arithmetic;
 use umbra::geometry::{Ray, Triangle, Triangles};
-use umbra::occlusion::{Backend, BuildOptions, GridOptions, Occlusion, Tally, Test, build};
+use umbra::occlusion::{
+    Backend, BackendError, BuildOptions, GridOptions, Occlusion, Tally, Test, build,
+};
 
 const OWN: [Backend; 3] = [Backend::Grid, Backend::Bvh2, Backend::Cwbvh];
 
@@ -182,11 +184,41 @@ fn a_ray_that_is_not_finite_is_not_blocked_and_counted() {
 #[test]
 fn a_ray_without_direction_meets_nothing() {
     let triangles = Arc::new(soup(100, 1.0, 8).into_iter().collect::<Triangles>());
-    for backend in [Backend::Brute, Backend::Grid, Backend::Bvh2, Backend::Cwbvh] {
-        for test in Test::ALL {
-            let occlusion = build(backend, test, &triangles, &BuildOptions::default()).unwrap();
-            let point = Ray::between(Vec3::splat(0.1), Vec3::splat(0.1));
-            assert!(!occlusion.occluded(&point, &mut Tally::default()), "{backend} {test}");
+    let kinds = [(true, false), (false, false), (true, true)];
+    let grids = kinds.map(|(nested, lazy)| GridOptions { nested, lazy, ..Default::default() });
+    let options = grids.map(|grid| BuildOptions { grid, ..Default::default() });
+    // In the middle of them, on a corner of each, and far away.
+    let corners = (0..100).map(|id| triangles.get(id)[0]);
+    let origins: Vec<Vec3> = corners.chain([Vec3::splat(0.1), Vec3::splat(1e30)]).collect();
+    for backend in Backend::ALL.into_iter().filter(|backend| backend.is_built_in()) {
+        for test in Test::ALL.into_iter().filter(|&test| backend.has(test)) {
+            for options in &options[..if backend == Backend::Grid { 3 } else { 1 }] {
+                let occlusion = build(backend, test, &triangles, options).unwrap();
+                for &origin in &origins {
+                    for ray in [Ray::between(origin, origin), Ray::towards(origin, Vec3::ZERO)] {
+                        let (tally, what) = (&mut Tally::default(), format!("{backend} {test}"));
+                        assert!(!occlusion.occluded(&ray, tally), "{what}: {ray:?}");
+                        assert_eq!(occlusion.nearest(&ray, tally), None, "{what}: {ray:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn an_arithmetic_is_used_where_this_cpu_has_it_and_refused_elsewhere() {
+    let triangles = Arc::new(soup(100, 1.0, 8).into_iter().collect::<Triangles>());
+    for arithmetic in Arithmetic::ALL {
+        let options = BuildOptions { arithmetic: Some(arithmetic), ..Default::default() };
+        for backend in [Backend::Brute, Backend::Grid, Backend::Bvh2, Backend::Cwbvh] {
+            match build(backend, Test::Exact, &triangles, &options) {
+                Ok(_) => assert!(arithmetic.is_available(), "{backend} {arithmetic:?}"),
+                Err(BackendError::Arithmetic(refused)) => {
+                    assert!(refused == arithmetic && !arithmetic.is_available(), "{backend}");
+                }
+                Err(other) => panic!("{backend} {arithmetic:?}: {other}"),
+            }
         }
     }
 }

@@ -2,12 +2,16 @@
 
 use std::{
     cell::RefCell,
+    collections::BTreeMap,
     ffi::{CStr, CString, c_char, c_void},
     fmt,
     ops::ControlFlow,
     panic::resume_unwind,
-    ptr::null_mut,
-    sync::Arc,
+    ptr::{null_mut, without_provenance_mut},
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering::Relaxed},
+    },
 };
 
 use crate::{
@@ -37,6 +41,7 @@ impl Isa {
     pub const ALL: [Isa; 5] = [Isa::Sse2, Isa::Sse42, Isa::Avx, Isa::Avx2, Isa::Avx512];
 
     /// Whether this processor has it. On processors that are not x86 none is.
+    #[must_use]
     pub fn is_available(self) -> bool {
         #[cfg(target_arch = "x86_64")]
         return match self {
@@ -84,6 +89,7 @@ pub struct DeviceConfig {
 
 impl DeviceConfig {
     /// Use the kernels for `isa` instead of the best this processor has.
+    #[must_use]
     pub fn isa(mut self, isa: Isa) -> Self {
         self.isa = Some(isa);
         self
@@ -92,6 +98,7 @@ impl DeviceConfig {
     /// Build with at most this many threads; 0 is all. Queries run on the thread that asks.
     ///
     /// Embree's threads are shared by all devices of the process: the largest number asked for by a living one counts.
+    #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads;
         self
@@ -103,6 +110,7 @@ impl DeviceConfig {
     /// means nothing. A panic cancels likewise, and goes on from the next call that looks for errors of this device. That is the
     /// one that was cancelled, unless several threads use the device at once: then it may be another's, and the one that was
     /// cancelled reports an error.
+    #[must_use]
     pub fn memory_monitor(
         mut self,
         monitor: impl Fn(isize) -> ControlFlow<()> + Send + Sync + 'static,
@@ -130,7 +138,9 @@ pub struct Device(Arc<DeviceOwner>);
 struct DeviceOwner {
     library: &'static Library,
     raw: RTCDevice,
-    memory: Box<Memory>,
+    /// Its number, which no other device of the process has had.
+    number: usize,
+    memory: Arc<Memory>,
 }
 
 // SAFETY: Embree's devices may be used and released from any thread, and several at once.
@@ -147,7 +157,11 @@ impl Drop for DeviceOwner {
 
 impl Device {
     /// Makes a device of the process's [`Library`].
+    ///
+    /// # Errors
+    /// If there is no library that will do, this processor lacks the instruction set, or Embree makes no device.
     pub fn new(config: DeviceConfig) -> Result<Self, Error> {
+        static DEVICES: AtomicUsize = AtomicUsize::new(0);
         let library = Library::load()?;
         if let Some(isa) = config.isa.filter(|isa| !isa.is_available()) {
             return Err(Error::UnsupportedIsa(isa));
@@ -157,27 +171,33 @@ impl Device {
         if raw.is_null() {
             return Err(creation_error(library));
         }
-        let memory = Box::new(Memory::new(config.memory_monitor));
-        // SAFETY: the device is alive; `memory` has its own place on the heap until after the device is gone.
+        let number = DEVICES.fetch_add(1, Relaxed);
+        let memory = Arc::new(Memory::new(config.memory_monitor));
+        // SAFETY: the device is alive; `memory` has its own place on the heap until after the device is gone, and the number is
+        // only read as a number.
         unsafe {
-            library.api.rtcSetDeviceErrorFunction(raw, Some(remember_message), null_mut());
-            let memory = (&raw const *memory).cast_mut().cast();
+            let number = without_provenance_mut(number);
+            library.api.rtcSetDeviceErrorFunction(raw, Some(remember_message), number);
+            let memory = Arc::as_ptr(&memory).cast_mut().cast();
             library.api.rtcSetDeviceMemoryMonitorFunction(raw, Some(watch_memory), memory);
         }
-        Ok(Self(Arc::new(DeviceOwner { library, raw, memory })))
+        Ok(Self(Arc::new(DeviceOwner { library, raw, number, memory })))
     }
 
     /// The library it belongs to.
+    #[must_use]
     pub fn library(&self) -> &'static Library {
         self.0.library
     }
 
     /// Bytes Embree holds for this device now: buffers and acceleration structures of its scenes.
+    #[must_use]
     pub fn memory_used(&self) -> usize {
         self.0.memory.used()
     }
 
     /// What this device and its library were built for.
+    #[must_use]
     pub fn properties(&self) -> DeviceProperties {
         let has = |property| self.0.library.property(self.0.raw, property) != 0;
         DeviceProperties {
@@ -205,13 +225,16 @@ impl Device {
     pub(crate) fn take_error(&self) -> Result<(), Error> {
         // SAFETY: the device is alive.
         let code = unsafe { self.0.library.api.rtcGetDeviceError(self.0.raw) };
-        let message = MESSAGE.take();
+        let message = MESSAGES.with_borrow_mut(|messages| messages.remove(&self.0.number));
         if let Some(payload) = self.0.memory.take_panic() {
             resume_unwind(payload);
         }
         match code {
             RTCError::RTC_ERROR_NONE => Ok(()),
-            code => Err(Error::Embree { code: ErrorCode::from_raw(code), message }),
+            code => {
+                let (code, message) = (ErrorCode::from_raw(code), message.unwrap_or_default());
+                Err(Error::Embree { code, message })
+            }
         }
     }
 }
@@ -248,16 +271,19 @@ pub struct DeviceProperties {
 }
 
 thread_local! {
-    /// Embree's words for the last error on this thread; it reports where the failing call was made.
-    static MESSAGE: RefCell<String> = const { RefCell::new(String::new()) };
+    /// By the number of a device, Embree's words for its first error on this thread since the last look: of that, Embree keeps the code. It
+    /// reports where the failing call was made.
+    static MESSAGES: RefCell<BTreeMap<usize, String>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-unsafe extern "C" fn remember_message(_: *mut c_void, _: RTCError, message: *const c_char) {
+unsafe extern "C" fn remember_message(device: *mut c_void, _: RTCError, message: *const c_char) {
     if !message.is_null() {
         // SAFETY: Embree passes a string that ends in a zero byte.
         let message = unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned();
         // Not while the thread is being torn down: then nobody will ask.
-        let _ = MESSAGE.try_with(|last| last.replace(message));
+        let _ = MESSAGES.try_with(|messages| {
+            messages.borrow_mut().entry(device.addr()).or_insert(message);
+        });
     }
 }
 
@@ -272,5 +298,40 @@ fn creation_error(library: &Library) -> Error {
             .filter(|message| !message.is_null());
         let message = message.map(|message| CStr::from_ptr(message).to_string_lossy().into_owned());
         Error::Embree { code, message: message.unwrap_or_else(|| "no device".into()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bindings::RTCGeometryType;
+
+    #[test]
+    fn of_several_errors_the_first_of_each_device_is_told_with_its_own_words() {
+        let api = &Library::load().unwrap_or_else(|error| panic!("{error}")).api;
+        let device = || Device::new(DeviceConfig::default()).unwrap();
+        let no_geometry = |device: &Device| {
+            // SAFETY: the device is alive, and Embree refuses what it does not know.
+            unsafe { api.rtcNewGeometry(device.raw(), RTCGeometryType(99)) };
+        };
+        let no_property = |device: &Device| {
+            // SAFETY: as above.
+            unsafe { api.rtcGetDeviceProperty(device.raw(), RTCDeviceProperty(9999)) };
+        };
+        let alone = |refused: &dyn Fn(&Device)| {
+            let device = device();
+            refused(&device);
+            device.take_error().unwrap_err()
+        };
+        let (geometry, property) = (alone(&no_geometry), alone(&no_property));
+        assert_ne!(geometry, property);
+        let (first, second) = (device(), device());
+        no_geometry(&first);
+        no_property(&second);
+        no_property(&first);
+        no_geometry(&second);
+        assert_eq!(first.take_error(), Err(geometry));
+        assert_eq!(second.take_error(), Err(property));
+        assert_eq!((first.take_error(), second.take_error()), (Ok(()), Ok(())));
     }
 }

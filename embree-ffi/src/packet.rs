@@ -59,6 +59,7 @@ impl<const N: usize> RayPacket<N> {
     }
 
     /// The first `N` of `rays` in as many lanes, and which lanes those are.
+    #[must_use]
     pub fn from_rays(rays: &[Ray]) -> (Self, Lanes<N>) {
         let mut packet = Self::default();
         for (lane, ray) in rays.iter().take(N).enumerate() {
@@ -90,6 +91,7 @@ impl<const N: usize> Lanes<N> {
     }
 
     /// The first `count`.
+    #[must_use]
     #[inline]
     pub fn first(count: usize) -> Self {
         Self::from_fn(|lane| lane < count)
@@ -194,9 +196,12 @@ packet_width!(8, RTCRay8, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED, rtcOccluded
 packet_width!(16, RTCRay16, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED, rtcOccluded16);
 
 impl Scene {
-    /// Packets of 4, 8 or 16 rays; [`Error::PacketWidth`] where this device has no kernels for that many.
+    /// Packets of 4, 8 or 16 rays.
     ///
     /// Packets decide a few rays at the edges of triangles otherwise than single rays do.
+    ///
+    /// # Errors
+    /// [`Error::PacketWidth`] where this device has no kernels for that many.
     pub fn packets<const N: usize>(&self, coherence: Coherence) -> Result<Packets<'_, N>, Error>
     where
         Width<N>: PacketWidth<N>,
@@ -208,7 +213,10 @@ impl Scene {
         Ok(Packets { scene: self, flags: coherence.flags() })
     }
 
-    /// [`packets`](Self::packets) with filters; [`Error::PacketFiltersNotBuilt`] where the scene was not built for them.
+    /// [`packets`](Self::packets) with filters.
+    ///
+    /// # Errors
+    /// As without, and [`Error::PacketFiltersNotBuilt`] where the scene was not built for them.
     pub fn filtered_packets<const N: usize>(
         &self,
         coherence: Coherence,

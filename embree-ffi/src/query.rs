@@ -14,6 +14,7 @@ impl Scene {
     }
 
     /// Whether anything blocks the ray.
+    #[must_use]
     #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
         let mut ray = *ray;
@@ -45,6 +46,7 @@ impl Scene {
     }
 
     /// Something that blocks the ray, not necessarily the nearest. `Some` exactly when [`occluded`](Self::occluded).
+    #[must_use]
     #[inline]
     pub fn occluder(&self, ray: &Ray) -> Option<Hit> {
         let mut found = None;
@@ -56,6 +58,7 @@ impl Scene {
     }
 
     /// The nearest hit.
+    #[must_use]
     #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         let mut both = ray.with_room_for_hit();

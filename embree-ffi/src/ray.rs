@@ -42,6 +42,7 @@ const _: () = {
 
 impl Ray {
     /// From `origin` along `direction`, `0 <= t <= infinity`.
+    #[must_use]
     #[inline]
     pub const fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
         Self {
@@ -57,30 +58,35 @@ impl Ray {
     }
 
     /// From `from` (t = 0) to `to` (t = 1).
+    #[must_use]
     #[inline]
     pub fn between(from: [f32; 3], to: [f32; 3]) -> Self {
         Self::new(from, [to[0] - from[0], to[1] - from[1], to[2] - from[2]]).with_interval(0.0, 1.0)
     }
 
     /// The same ray with other ends.
+    #[must_use]
     #[inline]
     pub const fn with_interval(self, tnear: f32, tfar: f32) -> Self {
         Self { tnear, tfar, ..self }
     }
 
     /// The same ray, seeing only geometries whose mask shares a bit with this one.
+    #[must_use]
     #[inline]
     pub const fn with_mask(self, mask: NonZeroU32) -> Self {
         Self { mask: mask.get(), ..self }
     }
 
     /// The mask; all bits unless [`with_mask`](Self::with_mask) said otherwise.
+    #[must_use]
     #[inline]
     pub const fn mask(&self) -> u32 {
         self.mask
     }
 
     /// Whether [`Scene::occluded1`](crate::Scene::occluded1) has found it blocked: that sets `tfar` to minus infinity.
+    #[must_use]
     #[inline]
     pub fn is_occluded(&self) -> bool {
         self.tfar == f32::NEG_INFINITY

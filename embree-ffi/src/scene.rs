@@ -34,21 +34,25 @@ pub struct SceneOptions {
 
 impl SceneOptions {
     /// The quality; medium by default.
+    #[must_use]
     pub fn quality(self, quality: BuildQuality) -> Self {
         Self { quality, ..self }
     }
 
     /// Pluecker's triangle test and conservative boxes: far fewer rays slip through edges and vertices. Off by default.
+    #[must_use]
     pub fn robust(self, robust: bool) -> Self {
         Self { robust, ..self }
     }
 
     /// Half the memory, somewhat slower. Off by default.
+    #[must_use]
     pub fn compact(self, compact: bool) -> Self {
         Self { compact, ..self }
     }
 
     /// Allow filters on packets ([`Scene::filtered_packets`]). Off by default. Single rays can always be filtered.
+    #[must_use]
     pub fn packet_filters(self, packet_filters: bool) -> Self {
         Self { packet_filters, ..self }
     }
@@ -76,11 +80,13 @@ pub struct Mesh<'m> {
 
 impl<'m> Mesh<'m> {
     /// Seen by every ray.
+    #[must_use]
     pub fn new(vertices: &'m [[f32; 3]], triangles: &'m [[u32; 3]]) -> Self {
         Self { vertices, triangles, mask: !0 }
     }
 
     /// Seen only by rays whose mask shares a bit with this one.
+    #[must_use]
     pub fn with_mask(self, mask: NonZeroU32) -> Self {
         Self { mask: mask.get(), ..self }
     }
@@ -112,6 +118,9 @@ pub struct SceneBuilder {
 
 impl SceneBuilder {
     /// An empty scene.
+    ///
+    /// # Errors
+    /// If Embree makes none, for lack of memory.
     pub fn new(device: &Device, options: SceneOptions) -> Result<Self, Error> {
         let api = &device.library().api;
         // SAFETY: the device is alive.
@@ -137,6 +146,9 @@ impl SceneBuilder {
     /// Copies a mesh into the scene. Its number is how many were added before.
     ///
     /// The copy lies in Embree's own buffers, which are padded as its vector loads need.
+    ///
+    /// # Errors
+    /// If the mesh is too large or names a vertex that it does not have, or memory does not suffice.
     pub fn add(&mut self, mesh: Mesh) -> Result<u32, Error> {
         mesh.check()?;
         let device = &self.owner.device;
@@ -172,14 +184,19 @@ impl SceneBuilder {
     }
 
     /// Builds the acceleration structure.
+    ///
+    /// # Errors
+    /// If memory does not suffice, or the device's monitor says so.
     pub fn commit(self) -> Result<Scene, Error> {
         self.build()
     }
 
     /// [`commit`](Self::commit), telling `progress` the fraction done, from any of the building threads.
     ///
-    /// [`ControlFlow::Break`] cancels with [`ErrorCode::Cancelled`](crate::ErrorCode::Cancelled). A panic cancels too, and
-    /// goes on from here.
+    /// A panic of `progress` cancels, and goes on from here.
+    ///
+    /// # Errors
+    /// As without it; and [`ErrorCode::Cancelled`](crate::ErrorCode::Cancelled) if it answers [`ControlFlow::Break`].
     pub fn commit_with_progress(
         self,
         progress: impl Fn(f64) -> ControlFlow<()> + Sync,
@@ -224,13 +241,17 @@ pub struct Scene {
 
 impl Scene {
     /// The device it was built by.
+    #[must_use]
     pub fn device(&self) -> &Device {
         &self.owner.device
     }
 
-    /// The first error that Embree met in this thread's queries since the last look.
+    /// Looks whether Embree met an error in this thread's queries since the last look.
     ///
     /// Queries do not look themselves, it would cost more than many of them. None of them is known to meet an error.
+    ///
+    /// # Errors
+    /// The first one that it met.
     pub fn check(&self) -> Result<(), Error> {
         self.owner.device.take_error()
     }

@@ -96,10 +96,8 @@ impl Extremes {
     }
 
     fn conditions(&self) -> Conditions {
-        let is_offered =
-            |backend: &Backend| *backend != Backend::Embree || cfg!(feature = "embree");
         let backends = match &self.backends[..] {
-            [] => Backend::ALL.into_iter().filter(is_offered).collect(),
+            [] => Backend::ALL.into_iter().filter(|backend| backend.is_built_in()).collect(),
             chosen => chosen.to_vec(),
         };
         let tests = if self.tests.is_empty() { Test::ALL.to_vec() } else { self.tests.clone() };

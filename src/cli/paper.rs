@@ -273,9 +273,5 @@ fn agreed(mut reports: impl Iterator<Item = (bool, &'static str)>) -> Result<(),
 
 /// Whether a column of the table is made for it unasked.
 fn is_offered(backend: Backend) -> bool {
-    match backend {
-        Backend::Grid | Backend::Bvh2 | Backend::Cwbvh => true,
-        Backend::Embree => cfg!(feature = "embree"),
-        Backend::Brute => false,
-    }
+    backend != Backend::Brute && backend.is_built_in()
 }

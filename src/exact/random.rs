@@ -1,29 +1,22 @@
-//! Random numbers that are the same on every machine: SplitMix64 (Steele, Lea, Flood, "Fast Splittable
-//! Pseudorandom Number Generators", OOPSLA 2014), and shapes made of them without rounding that depends on
+//! Random numbers that are the same on every machine, and shapes made of them without rounding that depends on
 //! a library.
 
 use glam::{DVec3, Vec3};
 
+use crate::geometry::random::SplitMix64;
 use crate::geometry::{Ray, Triangle};
 
 /// A generator of its own for each index of each stream.
-pub(crate) struct Random(u64);
+pub(crate) struct Random(SplitMix64);
 
 impl Random {
-    /// The increment: 2⁶⁴ over the golden ratio, made odd.
-    const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
-
     pub(crate) fn new(stream: u64, index: u64) -> Self {
-        let stream = Self(stream).bits();
-        Self(Self(stream ^ index).bits())
+        let first = |seed| SplitMix64::seeded(seed).bits();
+        Self(SplitMix64::seeded(first(first(stream) ^ index)))
     }
 
     fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(Self::STEP);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.bits()
     }
 
     pub(crate) fn below(&mut self, count: usize) -> usize {
@@ -36,7 +29,7 @@ impl Random {
 
     /// Uniform in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 * power_of_two(-53)
+        self.0.unit()
     }
 
     /// Uniform in [−1, 1).

@@ -8,6 +8,9 @@ use super::intersect::vicinity;
 /// Index of a triangle in [`Triangles`].
 pub type TriangleId = u32;
 
+/// No triangle has this id: there are never more than [`u32::MAX`].
+pub(crate) const NOBODY: TriangleId = TriangleId::MAX;
+
 /// The three corners of one triangle.
 pub type Triangle = [Vec3; 3];
 

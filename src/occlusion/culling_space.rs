@@ -25,6 +25,7 @@ use rayon::prelude::*;
 use super::Visit;
 use super::brute::visit_all;
 use super::clip::{Clip, clip, padding};
+use crate::geometry::random::scattered;
 use crate::geometry::{Bounds, Ray, TriangleId, Triangles, is_finite};
 
 /// See the table above.
@@ -153,7 +154,7 @@ fn spread_copies(boxes: &mut [Aabb]) {
     }
     for (id, bounds) in boxes.iter_mut().enumerate() {
         if many.contains(&key(bounds)) {
-            let bits = mixed(id as u64);
+            let bits = scattered(id as u64);
             let part = |shift: u32| ((bits >> shift) & 0xffff) as f32 / 65536.0;
             let low = Vec3A::new(part(0), part(16), part(32));
             bounds.min -= SPREAD * low;
@@ -165,12 +166,5 @@ fn spread_copies(boxes: &mut [Aabb]) {
 /// A number that boxes which are alike share.
 fn key(bounds: &Aabb) -> u64 {
     let corners = [bounds.min.to_array(), bounds.max.to_array()];
-    corners.as_flattened().iter().fold(0, |key, value| mixed(key ^ u64::from(value.to_bits())))
-}
-
-/// Scatters bits: the finalizer of SplitMix64.
-fn mixed(bits: u64) -> u64 {
-    let bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ (bits >> 31)
+    corners.as_flattened().iter().fold(0, |key, value| scattered(key ^ u64::from(value.to_bits())))
 }

@@ -2,7 +2,7 @@
 //!
 //! Gathering corners from all over the scene costs more than the test itself.
 
-use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob, Vector};
+use crate::geometry::lanes::{Available, Lanes, LanesJob, Vector};
 use crate::geometry::{TriangleId, Triangles};
 
 /// Triangles of an [`Eight`], and of all that is made of them.
@@ -14,11 +14,11 @@ pub const WIDTH: usize = 8;
 pub struct Eight([[[f32; WIDTH]; 3]; 3]);
 
 impl Eight {
-    /// Of these triangles; by an arithmetic that this CPU has, whichever is fastest.
+    /// Of these triangles; by whichever arithmetic is fastest.
     pub(crate) fn new(
         triangles: &Triangles,
         ids: &[TriangleId; WIDTH],
-        arithmetic: Arithmetic,
+        arithmetic: Available,
     ) -> Self {
         arithmetic.run(Gather { triangles, ids })
     }

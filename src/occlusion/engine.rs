@@ -11,7 +11,7 @@ use super::sparing::SparingOccluder;
 use super::transparent::{AllTransparent, among_transparent};
 use super::{Cell, LeftOut, Nearest, NestedGrid, Occluder, Occlusion, Tally, Walk};
 use crate::geometry::intersect::{Claims, RayLanes, TriangleTest};
-use crate::geometry::lanes::{Arithmetic, Kernel, Lanes, LanesJob};
+use crate::geometry::lanes::{Arithmetic, Available, Kernel, Lanes, LanesJob};
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 /// The backend that culls by `W` and decides by `T`.
@@ -20,7 +20,7 @@ pub struct Engine<W, T> {
     walk: W,
     /// Over the transparent triangles alone, where they are the lesser part.
     transparent: Option<NestedGrid>,
-    arithmetic: Arithmetic,
+    arithmetic: Available,
     test: PhantomData<T>,
 }
 
@@ -32,7 +32,8 @@ impl<W: Walk, T: TriangleTest> Engine<W, T> {
     #[must_use]
     pub fn new(triangles: Arc<Triangles>, walk: W, arithmetic: Option<Arithmetic>) -> Self {
         let arithmetic = arithmetic.unwrap_or_else(Arithmetic::of_this_cpu);
-        assert!(arithmetic.is_available(), "this CPU has no {} arithmetic", arithmetic.name());
+        let arithmetic = Available::find(arithmetic)
+            .unwrap_or_else(|| panic!("this CPU has no {} arithmetic", arithmetic.name()));
         let transparent = W::APART.then(|| among_transparent(&triangles)).flatten();
         Self { triangles, walk, transparent, arithmetic, test: PhantomData }
     }
@@ -52,7 +53,7 @@ impl<W: Walk, T: TriangleTest> Engine<W, T> {
         self.transparent.as_ref()
     }
 
-    /// Runs a job compiled for the instruction set of the arithmetic, which `new` checked.
+    /// Runs a job compiled for the instruction set of the arithmetic.
     #[inline]
     fn run<J: Job<W, T>>(&self, job: J) -> J::Answer {
         self.arithmetic.run(WithEngine(job, self))

@@ -35,6 +35,18 @@ impl Backend {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Grid, Self::Embree, Self::Bvh2, Self::Cwbvh, Self::Brute];
 
+    /// Whether this umbra was built with it.
+    #[must_use]
+    pub fn is_built_in(self) -> bool {
+        self != Self::Embree || cfg!(feature = "embree")
+    }
+
+    /// Whether it can decide by a test: Embree has those of its own only.
+    #[must_use]
+    pub fn has(self, test: Test) -> bool {
+        self != Self::Embree || matches!(test, Test::Pluecker | Test::Moller)
+    }
+
     /// The test it uses where nothing else is asked for: the exact one where it can.
     #[must_use]
     pub fn default_test(self) -> Test {
@@ -117,7 +129,7 @@ impl FromStr for Test {
 pub struct BuildOptions {
     /// How finely the grid divides the scene.
     pub grid: GridOptions,
-    /// The arithmetic of the triangle tests; that of this CPU if none is named.
+    /// The arithmetic of the triangle tests, which this CPU must have; its newest if none is named. Embree has its own.
     pub arithmetic: Option<Arithmetic>,
     /// How Embree is used.
     #[cfg(feature = "embree")]
@@ -139,6 +151,9 @@ pub enum BackendError {
     /// The grid cannot be as fine as was asked for.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// This CPU lacks the arithmetic that was asked for.
+    #[error("this CPU has no {} arithmetic; leave it to umbra, which takes the newest there is", .0.name())]
+    Arithmetic(Arithmetic),
     /// Embree decides by its own arithmetic.
     #[error(
         "embree has no test '{0}': its own are pluecker (robust mode) and moller (default mode)"
@@ -168,13 +183,17 @@ pub enum BackendError {
 /// ```
 ///
 /// # Errors
-/// If the backend is not to be had here, or not as fine.
+/// If the backend or the arithmetic is not to be had here, or the grid not as fine.
 pub fn build(
     backend: Backend,
     test: Test,
     triangles: &Arc<Triangles>,
     options: &BuildOptions,
 ) -> Result<Box<dyn Occlusion>, BackendError> {
+    let own = backend != Backend::Embree;
+    if let Some(arithmetic) = options.arithmetic.filter(|one| own && !one.is_available()) {
+        return Err(BackendError::Arithmetic(arithmetic));
+    }
     Ok(match backend {
         Backend::Grid => grid(test, triangles, options)?,
         Backend::Bvh2 => engine(test, triangles, Bvh2::new(triangles), options),
@@ -205,11 +224,10 @@ fn embree(
     triangles: &Arc<Triangles>,
     options: &BuildOptions,
 ) -> Result<Box<dyn Occlusion>, BackendError> {
-    let robust = match test {
-        Test::Pluecker => true,
-        Test::Moller => false,
-        other => return Err(BackendError::NotInEmbree(other)),
-    };
+    if !Backend::Embree.has(test) {
+        return Err(BackendError::NotInEmbree(test));
+    }
+    let robust = test == Test::Pluecker;
     Ok(Box::new(super::Embree::new(triangles.clone(), robust, options.embree)?))
 }
 

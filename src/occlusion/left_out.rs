@@ -16,13 +16,10 @@
 //! Visual Computer 3(2), 1987. The hashed table is that of Wald's dissertation (Saarbrücken 2004).
 
 use super::Cell;
-use crate::geometry::TriangleId;
+use crate::geometry::{NOBODY, TriangleId};
 
 /// Slots of the table: 2 KiB.
 const SLOTS: usize = 256;
-
-/// No triangle has this id.
-const NOBODY: TriangleId = TriangleId::MAX;
 
 #[derive(Clone, Copy, Default)]
 struct Slot {

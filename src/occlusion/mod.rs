@@ -69,7 +69,7 @@ pub struct Cell {
 pub struct Occluder {
     /// The triangle.
     pub triangle: TriangleId,
-    /// Its neighbourhood.
+    /// Its neighbourhood; empty where the backend's cells are not there yet ([`Occlusion::has_cells`]).
     pub cell: Cell,
 }
 
@@ -137,7 +137,7 @@ pub trait Occlusion: Any + Send + Sync {
     /// The triangles in an order that keeps each cell together; a triangle may recur.
     fn order(&self) -> &[TriangleId];
 
-    /// Whether its cells are there; if not, they are made when they are first needed.
+    /// Whether its cells are there; if not, they are made when [`order`](Self::order) or a cell is first asked for.
     fn has_cells(&self) -> bool {
         true
     }

@@ -95,7 +95,7 @@ impl Settings {
     /// whose answers are to be kept.
     ///
     /// # Errors
-    /// Says which one does not, and what would.
+    /// If one of them does not: says which, and what would.
     pub fn check(&self) -> Result<(), SettingsError> {
         let Self { width, height, .. } = *self;
         if width == 0 || height == 0 || u64::from(width) * u64::from(height) > MOST_PIXELS {

@@ -17,8 +17,9 @@ const LEAST: u64 = 1 << 20;
 #[derive(Debug)]
 pub struct Budget {
     left: AtomicU64,
-    /// Those that there were, and those that a backend takes, or would under a larger limit.
+    /// Bytes that there were.
     all: u64,
+    /// Bytes that the backend beside takes, or would under a larger limit.
     backend: u64,
 }
 

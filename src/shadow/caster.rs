@@ -28,8 +28,10 @@ impl<'a, M: Memory, K: Shelf<M>> Cached<'a, M, K> {
         shared: M::Shared,
         plan: Plan,
     ) -> Self {
-        // Embree's companion grid is built when it is first asked for: now, not by a worker.
-        let _ = backend.order();
+        if M::NEEDS_CELLS {
+            // Embree's are made when they are first asked for: now, not by a worker.
+            let _ = backend.order();
+        }
         Self { backend, opaque, verdicts, shelf, shared, plan }
     }
 
@@ -47,7 +49,8 @@ impl<'a, M: Memory, K: Shelf<M>> Cached<'a, M, K> {
 
 impl<M: Memory, K: Shelf<M>> Prepared for Cached<'_, M, K> {
     fn worker(&self) -> Box<dyn Shadows + '_> {
-        let direct = Direct::new(self.backend, self.opaque);
+        let ask = if M::NEEDS_CELLS { Direct::new } else { Direct::without_cells };
+        let direct = ask(self.backend, self.opaque);
         let spawner = self.leaves_out_spawner();
         if spawner || self.plan.retest != Retest::Again {
             Box::new(self.caster(Sparing::new(direct, spawner, self.plan.retest)))

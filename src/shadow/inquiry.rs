@@ -40,6 +40,12 @@ impl<'a> Direct<'a> {
     pub fn new(backend: &'a dyn Occlusion, opaque: u32) -> Self {
         Self { backend, opaque, places: backend.order().len() as u32 }
     }
+
+    /// The same for memories that need no cells; to others, none is there.
+    #[must_use]
+    pub fn without_cells(backend: &'a dyn Occlusion, opaque: u32) -> Self {
+        Self { backend, opaque, places: 0 }
+    }
 }
 
 impl Inquiry for Direct<'_> {

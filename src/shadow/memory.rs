@@ -9,6 +9,9 @@ pub trait Memory: Clone + Default + Send + Sync {
     /// What all memories of a worker have in common.
     type Shared: Clone + Send + Sync;
 
+    /// Whether it asks for cells: not every backend has them before somebody does.
+    const NEEDS_CELLS: bool;
+
     /// Whether what is remembered blocks the query.
     fn recall<I: Inquiry>(
         &mut self,
@@ -28,6 +31,8 @@ pub struct Forgetful;
 
 impl Memory for Forgetful {
     type Shared = ();
+
+    const NEEDS_CELLS: bool = false;
 
     #[inline(always)]
     fn recall<I: Inquiry>(

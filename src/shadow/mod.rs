@@ -2,7 +2,15 @@
 //!
 //! A query asks verdicts first (prepared, shared, settle some queries as lit or blocked), then
 //! memories (owned by the worker, may only say "blocked", on a triangle's word), then the backend.
-//! For any content of any of them the answer is that of the backend alone, bit for bit.
+//! Before a backend with the exact test no method changes an answer, whatever it remembers. Before an f32 test, or Embree, memories keep
+//! the backend's bits, as they ask its own test; verdicts give the exact answer instead.
+//!
+//! | verdict | what proves it |
+//! | --- | --- |
+//! | `shaft` | between a light and 256 neighbouring origins lies nothing, or something that planes through the light decide |
+//! | `light-buffer` | what lies in one direction of a light, nearest first |
+//! | `voxel-occlusion` | between a light and a voxel all light comes through, or none |
+//! | `shadow-polygons` | the shadow volumes that reach into a voxel, counted |
 //!
 //! A method is a memory on a shelf, which says where memories live, behind any verdicts:
 //!

@@ -11,11 +11,8 @@
 //! Haines, Greenberg: The Light Buffer: A Ray Tracer Shadow Testing Accelerator. IEEE CG&A 6(9), 1986.
 
 use super::{Inquiry, Memory, Outcome, ShadowQuery, ShadowTally};
-use crate::geometry::TriangleId;
+use crate::geometry::{NOBODY, TriangleId};
 use crate::occlusion::Occluder;
-
-/// No triangle has this id.
-pub(super) const NOBODY: TriangleId = TriangleId::MAX;
 
 /// The triangle that blocked last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +29,8 @@ impl Default for LastOccluder {
 
 impl Memory for LastOccluder {
     type Shared = ();
+
+    const NEEDS_CELLS: bool = false;
 
     #[inline(always)]
     fn recall<I: Inquiry>(

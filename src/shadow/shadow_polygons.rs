@@ -13,7 +13,7 @@
 //!
 //! Loses in most scenes: a query tests all polygons of its voxel, three to five determinants each, where a
 //! ray ends at the first triangle it meets; and a voxel with its polygons is prepared for each light. It
-//! wins where rays go a long way past few polygons. Figures in docs/methods.md.
+//! wins where rays go a long way past few polygons.
 //!
 //! Exact, because every sign is certain or the query is passed on to a ray: determinants are taken in f64
 //! with a bound for rounding and for where rays towards the light end (`voxels::source`). So a point

@@ -30,6 +30,7 @@ pub(super) struct Stock<'a> {
 #[derive(Default)]
 struct Shared {
     clusters: OnceLock<Option<Arc<Clusters>>>,
+    glass: OnceLock<Option<Arc<Clusters>>>,
     light_buffer: OnceLock<Arc<LightBuffer>>,
 }
 
@@ -43,12 +44,35 @@ impl<'a> Stock<'a> {
         Self { budget: self.budget.clone(), verdicts, shared: self.shared.clone(), ..*self }
     }
 
-    /// The triangles' clusters, if the memory suffices; and their bytes, for whoever asks first.
+    /// The opaque triangles' clusters, if the memory suffices; and their bytes, for whoever asks first.
     pub fn clusters(&self) -> (Option<Arc<Clusters>>, usize) {
+        let triangles = &self.scene.triangles;
+        let count = triangles.opaque_count() as usize;
+        self.once(&self.shared.clusters, count, || Clusters::new(triangles))
+    }
+
+    /// Clusters of the transparent triangles, if there are any and the memory suffices; and their bytes, for whoever asks first.
+    pub fn glass(&self) -> Option<(Arc<Clusters>, usize)> {
+        let triangles = &self.scene.triangles;
+        let count = triangles.len() - triangles.opaque_count() as usize;
+        if count == 0 {
+            return None;
+        }
+        let make = || Clusters::of_transparent(triangles);
+        let (clusters, bytes) = self.once(&self.shared.glass, count, make);
+        Some((clusters?, bytes))
+    }
+
+    /// Clusters of so many triangles, which are made by whoever asks first; only to them they cost bytes.
+    fn once(
+        &self,
+        shared: &OnceLock<Option<Arc<Clusters>>>,
+        count: usize,
+        make: impl FnOnce() -> Clusters,
+    ) -> (Option<Arc<Clusters>>, usize) {
         let mut bytes = 0;
-        let clusters = self.shared.clusters.get_or_init(|| {
-            let opaque = self.scene.triangles.opaque_count() as usize;
-            let clusters = self.within_budget(opaque, || Clusters::new(&self.scene.triangles));
+        let clusters = shared.get_or_init(|| {
+            let clusters = self.within_budget(count, make);
             bytes = clusters.as_ref().map_or(0, |clusters| clusters.memory());
             clusters
         });
@@ -79,16 +103,6 @@ impl<'a> Stock<'a> {
         let suffices = self.budget.take(bytes.saturating_sub(estimate));
         self.budget.give_back(if suffices { estimate.saturating_sub(bytes) } else { estimate });
         suffices.then(|| Arc::new(clusters))
-    }
-
-    /// Clusters of the transparent triangles, if there are any and the memory suffices; and their bytes.
-    pub fn glass(&self) -> Option<(Arc<Clusters>, usize)> {
-        let triangles = &self.scene.triangles;
-        let count = triangles.len() - triangles.opaque_count() as usize;
-        let make = || Clusters::of_transparent(triangles);
-        let clusters = (count > 0).then(|| self.within_budget(count, make)).flatten()?;
-        let bytes = clusters.memory();
-        Some((clusters, bytes))
     }
 
     /// The one light buffer of all sets of verdicts that have it.
@@ -132,5 +146,30 @@ mod tests {
         let (clusters, bytes) = stock.clusters();
         assert!(clusters.is_some() && bytes == truth);
         assert_eq!(stock.budget.left(), 5);
+    }
+
+    #[test]
+    fn sets_of_verdicts_that_share_a_stock_pay_for_their_clusters_once() {
+        let [opaque, glass] = [0.0, 50.0].map(|z| {
+            let strip = |number: u16| {
+                [Vec3::ZERO, Vec3::X, Vec3::Y]
+                    .map(|corner| corner + Vec3::new(f32::from(number), 0.0, z))
+            };
+            (0..100).map(strip).collect::<Vec<_>>()
+        });
+        let triangles = Triangles::new(opaque, glass).into();
+        let scene = Scene { triangles, ..crate::scene::load("jittered-dense").unwrap() };
+        let stock = Stock::new(&scene, Arc::new(Budget::new(1 << 20)), VerdictSet::NONE);
+        let other = stock.for_verdicts(VerdictSet::NONE);
+        let (clusters, bytes) = stock.clusters();
+        let (glass, glass_bytes) = stock.glass().unwrap();
+        let left = stock.budget.left();
+        assert!(bytes > 0 && glass_bytes > 0);
+        assert_eq!(left, (1 << 20) - (bytes + glass_bytes) as u64);
+        let (same_clusters, nothing) = other.clusters();
+        assert!(Arc::ptr_eq(&clusters.unwrap(), &same_clusters.unwrap()) && nothing == 0);
+        let (same_glass, nothing) = other.glass().unwrap();
+        assert!(Arc::ptr_eq(&glass, &same_glass) && nothing == 0);
+        assert_eq!(stock.budget.left(), left);
     }
 }

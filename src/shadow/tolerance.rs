@@ -57,6 +57,8 @@ impl<M> Nearby<M> {
 impl<M: Memory> Memory for Nearby<M> {
     type Shared = (Tolerance, M::Shared);
 
+    const NEEDS_CELLS: bool = M::NEEDS_CELLS;
+
     #[inline(always)]
     fn recall<I: Inquiry>(
         &mut self,

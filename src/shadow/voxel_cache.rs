@@ -14,9 +14,8 @@
 //!
 //! Pearce, Jevans: Exploiting Shadow Coherence in Ray Tracing. Graphics Interface 1991.
 
-use super::object_cache::NOBODY;
 use super::{Inquiry, Memory, Outcome, ShadowQuery, ShadowTally};
-use crate::geometry::TriangleId;
+use crate::geometry::{NOBODY, TriangleId};
 use crate::occlusion::{Cell, Occluder};
 
 /// The triangle that blocked last, and its cell: the paper's `last_object` and `last_voxel`.
@@ -36,6 +35,8 @@ impl Default for LastVoxel {
 
 impl Memory for LastVoxel {
     type Shared = ();
+
+    const NEEDS_CELLS: bool = true;
 
     #[inline(always)]
     fn recall<I: Inquiry>(

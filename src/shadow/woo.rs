@@ -12,9 +12,8 @@
 //!
 //! Woo's suggestion in Pearce, Jevans: Exploiting Shadow Coherence in Ray Tracing. Graphics Interface 1991.
 
-use super::object_cache::NOBODY;
 use super::{Inquiry, Memory, Outcome, ShadowQuery, ShadowTally};
-use crate::geometry::TriangleId;
+use crate::geometry::{NOBODY, TriangleId};
 use crate::occlusion::{Cell, Occluder};
 
 /// Voxels with a front, at most: 2 KiB a worker.
@@ -62,6 +61,8 @@ pub struct LastCell {
 
 impl Memory for LastCell {
     type Shared = Fronts;
+
+    const NEEDS_CELLS: bool = true;
 
     #[inline(always)]
     fn recall<I: Inquiry>(

@@ -25,11 +25,15 @@ impl fmt::Display for Version {
 
 impl Version {
     /// From Embree's own way of writing it: 40302 is 4.3.2.
+    #[must_use]
     pub const fn from_number(number: u32) -> Self {
         Self { major: number / 10_000, minor: number / 100 % 100, patch: number % 100 }
     }
 
-    /// At least 4.3, below 5; otherwise why not.
+    /// Whether this crate knows it: at least 4.3, below 5.
+    ///
+    /// # Errors
+    /// Says why not.
     pub fn check(self) -> Result<(), String> {
         if self.major < 4 || self.major == 4 && self.minor < 3 {
             return Err(format!(

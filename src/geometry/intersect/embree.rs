@@ -19,6 +19,12 @@ use super::{Claims, RayLanes, TriangleTest, vicinity};
 use crate::geometry::lanes::{Lanes, Scalar, Vector};
 use crate::geometry::{Bounds, Ray, Triangle};
 
+/// Embree ignores triangles with coordinates as large as this (`FLT_LARGE`).
+pub(crate) const EMBREE_LARGEST: f32 = 1.844e18;
+
+/// Direction components below this are replaced by it, sign lost, before Embree inverts them.
+pub(crate) const EMBREE_SMALLEST: f32 = 1e-18;
+
 /// Passes where `T` passes: Embree's answer is "not blocked" where no triangle passes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AtMost<T>(PhantomData<T>);
@@ -51,20 +57,15 @@ impl<T: TriangleTest, B: BoxTest> TriangleTest for AtLeast<T, B> {
     }
 
     fn settle(ray: &Ray, triangle: &Triangle, slack: f64) -> bool {
-        // Embree ignores triangles with larger coordinates (`FLT_LARGE`).
-        const LARGEST: f32 = 1.844e18;
         let bounds = Bounds::of(*triangle);
-        bounds.largest_coordinate() < LARGEST
+        bounds.largest_coordinate() < EMBREE_LARGEST
             && B::passes(ray, &bounds)
             && vicinity::meets(ray, triangle, slack)
     }
 }
 
-/// Direction components smaller than this are replaced by it, sign lost, before they are inverted.
-const SMALLEST_COMPONENT: f32 = 1e-18;
-
 fn fix_zero(component: f32) -> f32 {
-    if component.abs() < SMALLEST_COMPONENT { SMALLEST_COMPONENT } else { component }
+    if component.abs() < EMBREE_SMALLEST { EMBREE_SMALLEST } else { component }
 }
 
 /// Near and far planes in one axis, for a ray that runs up or down it.

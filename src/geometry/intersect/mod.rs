@@ -7,6 +7,7 @@ pub(super) mod vicinity;
 mod watertight;
 
 pub use embree::{AtLeast, AtMost, BoxTest, FastBox, RobustBox};
+pub(crate) use embree::{EMBREE_LARGEST, EMBREE_SMALLEST};
 pub use moller::Moller;
 pub use pluecker::Pluecker;
 pub use watertight::{Shear, Watertight};

@@ -2,7 +2,7 @@
 //! sixteen at once as well.
 //!
 //! Every `unsafe` here has one reason. SAFETY: [`Avx`] exists in this crate only inside functions
-//! compiled with the instruction set, which run only where `Arithmetic::is_available` found it.
+//! compiled with the instruction set, which run only where `Available` found it.
 
 use std::arch::x86_64::*;
 

@@ -14,6 +14,7 @@
 //! measured). So code over [`Lanes`] is written without closures, `map` and `from_fn` over lanes included;
 //! and where a kernel is reached through somebody else's closure, it goes through [`Lanes::run`].
 
+mod available;
 #[cfg(target_arch = "x86_64")]
 mod avx;
 mod scalar;
@@ -21,17 +22,11 @@ mod sixteen;
 #[cfg(target_arch = "x86_64")]
 mod sse;
 
-use std::marker::PhantomData;
-
 use glam::{Vec3, Vec3A};
 
+pub(crate) use available::Available;
 pub use scalar::Scalar;
 pub use sixteen::{Several, Sixteen};
-
-#[cfg(target_arch = "x86_64")]
-use avx::Avx;
-#[cfg(target_arch = "x86_64")]
-use sse::Sse;
 
 use super::{Ray, TriangleId};
 
@@ -43,24 +38,12 @@ pub trait Kernel {
     fn run(self) -> Self::Answer;
 }
 
-/// Something to do in lanes of whatever kind: those of an [`Arithmetic`].
+/// Something to do in lanes of whatever kind: those of an [`Arithmetic`] that this CPU has.
 pub trait LanesJob {
     /// What it gives.
     type Answer;
     /// Does it; to be marked `#[inline(always)]`.
     fn run<L: Lanes>(self) -> Self::Answer;
-}
-
-/// A job in lanes of one kind.
-struct InLanes<J, L>(J, PhantomData<L>);
-
-impl<J: LanesJob, L: Lanes> Kernel for InLanes<J, L> {
-    type Answer = J::Answer;
-
-    #[inline(always)]
-    fn run(self) -> J::Answer {
-        self.0.run::<L>()
-    }
 }
 
 /// Values of f32 that are computed with together.
@@ -222,20 +205,7 @@ impl Arithmetic {
     /// The newest that this CPU has: the one Embree chooses by itself.
     #[must_use]
     pub fn of_this_cpu() -> Self {
-        Self::available().last().expect("SSE arithmetic is everywhere")
-    }
-
-    /// Runs a job compiled for the instruction set. The caller has made sure that this CPU has it.
-    #[inline]
-    pub(crate) fn run<J: LanesJob>(self, job: J) -> J::Answer {
-        #[cfg(target_arch = "x86_64")]
-        match self {
-            Self::Sse => Sse::run(InLanes::<_, Sse>(job, PhantomData)),
-            Self::Avx2 => Avx::<false>::run(InLanes::<_, Avx<false>>(job, PhantomData)),
-            Self::Avx512 => Avx::<true>::run(InLanes::<_, Avx<true>>(job, PhantomData)),
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        job.run::<Scalar<false, false>>()
+        Available::newest().arithmetic()
     }
 
     /// Short name.

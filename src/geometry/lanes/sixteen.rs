@@ -174,7 +174,7 @@ impl<L: Lanes, const N: usize> Sixteen for Several<L, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::lanes::{Arithmetic, LanesJob};
+    use crate::geometry::lanes::{Available, LanesJob};
 
     struct Sums([f32; 16], [f32; 16]);
 
@@ -206,7 +206,7 @@ mod tests {
             least = least.min(sum);
             greatest = greatest.max(sum);
         }
-        for arithmetic in Arithmetic::available() {
+        for arithmetic in Available::all() {
             let got = arithmetic.run(Sums(a, b));
             assert_eq!(got, (bits, [least, greatest]), "{arithmetic:?}");
         }

@@ -25,6 +25,7 @@ use std::ops::RangeInclusive;
 
 use glam::{DVec3, Vec3Swizzles};
 
+use crate::geometry::intersect::{EMBREE_LARGEST, EMBREE_SMALLEST};
 use crate::geometry::{Bounds, Ray, Triangle};
 
 /// How many error bounds away from zero a sign is taken to be the same in any f32 evaluation.
@@ -43,11 +44,8 @@ const OVERFLOW: f64 = ROUNDING * f32::MAX as f64 / 16.0;
 const INVERTIBLE: RangeInclusive<f64> =
     4.0 * f32::MIN_POSITIVE as f64..=0.25 / f32::MIN_POSITIVE as f64;
 
-/// Embree ignores triangles with coordinates as large as this (`FLT_LARGE`).
-const LARGEST: f32 = 1.844e18;
-
-/// Direction components below this are replaced by it before they are inverted.
-const SMALLEST_COMPONENT: f64 = 1e-18;
+/// Direction components below this are replaced by it.
+const SMALLEST_COMPONENT: f64 = EMBREE_SMALLEST as f64;
 
 /// What an engine may say of a triangle, however it rounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -202,7 +200,7 @@ fn pluecker(ray: &Ray, triangle: &Triangle) -> Sides {
 /// The ray passes iff it enters each slab before it leaves any other; that it leaves a slab no earlier than it
 /// enters the same is certain even for flat boxes, as rounding is monotone.
 fn box_is_met(ray: &Ray, bounds: &Bounds) -> bool {
-    if bounds.min.abs().max(bounds.max.abs()).max_element() >= LARGEST {
+    if bounds.min.abs().max(bounds.max.abs()).max_element() >= EMBREE_LARGEST {
         return false;
     }
     // Entry and exit with their error; the first is the interval itself, which is not rounded.

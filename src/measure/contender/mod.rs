@@ -164,9 +164,7 @@ impl Choice {
     /// The backends that are meant.
     #[must_use]
     pub fn backends(&self) -> Vec<Backend> {
-        let is_sensible = |&backend: &Backend| {
-            backend != Backend::Brute && (backend != Backend::Embree || cfg!(feature = "embree"))
-        };
+        let is_sensible = |&backend: &Backend| backend != Backend::Brute && backend.is_built_in();
         or_all(&self.backends, || Backend::ALL.into_iter().filter(is_sensible).collect())
     }
 
@@ -177,12 +175,12 @@ impl Choice {
         let methods = or_all(&self.methods, || vec![Combination::default()]);
         let mut selection = Selection::default();
         for backend in self.backends() {
-            if backend == Backend::Embree && !cfg!(feature = "embree") {
+            if !backend.is_built_in() {
                 selection.left_out.push(format!("{backend}: {}", BackendError::WithoutEmbree));
                 continue;
             }
             for &test in &tests {
-                if backend == Backend::Embree && !matches!(test, Test::Pluecker | Test::Moller) {
+                if !backend.has(test) {
                     // Of a test that nobody named, nobody misses it.
                     if !self.tests.is_empty() {
                         let reason = BackendError::NotInEmbree(test);

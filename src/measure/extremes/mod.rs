@@ -43,14 +43,9 @@ impl Conditions {
     /// Whether there is nobody to ask: no engine has any of the tests.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        let asked = |&test: &Test| self.backends.iter().any(|&backend| has(backend, test));
+        let asked = |&test: &Test| self.backends.iter().any(|backend| backend.has(test));
         !self.tests.iter().any(asked)
     }
-}
-
-/// Whether an engine has a test.
-fn has(backend: Backend, test: Test) -> bool {
-    backend != Backend::Embree || matches!(test, Test::Pluecker | Test::Moller)
 }
 
 /// What one engine answered in one case.
@@ -135,7 +130,7 @@ pub fn examine(case: &Case, conditions: &Conditions) -> Result<Report, BackendEr
     for &test in &conditions.tests {
         let brute = answers(Backend::Brute, test, &mesh, &rays)?;
         for &backend in &conditions.backends {
-            if !has(backend, test) {
+            if !backend.has(test) {
                 continue;
             }
             let is_peer = backend == Backend::Embree;

@@ -18,7 +18,7 @@ use super::collapse::{Half, collapse};
 use super::divide::{Around, Divided, Item, divide, places_of};
 use super::few::{self, FEW};
 use super::{Cluster, Clusters, Node, WIDTH};
-use crate::geometry::lanes::Arithmetic;
+use crate::geometry::lanes::Available;
 use crate::geometry::{TriangleId, Triangles, is_finite};
 use crate::occlusion::Eight;
 
@@ -40,7 +40,7 @@ fn build_by_numbers(
     count: usize,
     id: impl Fn(usize) -> TriangleId,
 ) -> Clusters {
-    let arithmetic = Arithmetic::of_this_cpu();
+    let arithmetic = Available::newest();
     let item = |number| {
         let id = id(number);
         Item::new(triangles.corners()[id as usize], id)
@@ -74,7 +74,7 @@ fn build_by_numbers(
 /// Sorts items so that those of a cluster are in a row. `first` is the place of the first one among all.
 #[derive(Clone, Copy)]
 struct Arranging {
-    arithmetic: Arithmetic,
+    arithmetic: Available,
 }
 
 impl Arranging {

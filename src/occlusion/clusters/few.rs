@@ -5,7 +5,7 @@
 //! To sort so few is to count, for each, how many come before it, which vectors do without a branch.
 
 use super::divide::{Around, Divided, Heap, Item, places_of};
-use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
+use crate::geometry::lanes::{Available, Lanes, LanesJob};
 
 /// So many at most.
 pub(super) const FEW: usize = 128;
@@ -15,7 +15,7 @@ pub(super) const FEW: usize = 128;
 const KEY_BITS: u32 = 15;
 
 /// Divides [`FEW`] items or less, but more than a cluster has.
-pub(super) fn divide(items: &mut [Item], places: &Around, arithmetic: Arithmetic) -> Divided {
+pub(super) fn divide(items: &mut [Item], places: &Around, arithmetic: Available) -> Divided {
     let sorted = sort(items, places, arithmetic);
     let best = if sorted { cheapest_cut(items) } else { None };
     let at = best.unwrap_or(items.len() / 2);
@@ -24,7 +24,7 @@ pub(super) fn divide(items: &mut [Item], places: &Around, arithmetic: Arithmetic
 }
 
 /// Sorts them along the longest axis of the box around their places, but for those that are very close; whether there is one.
-fn sort(items: &mut [Item], places: &Around, arithmetic: Arithmetic) -> bool {
+fn sort(items: &mut [Item], places: &Around, arithmetic: Available) -> bool {
     let (axis, extent) = places.longest();
     let number_bits = (items.len() - 1).ilog2() + 1;
     let last = (1 << (KEY_BITS - number_bits)) - 1;
@@ -117,7 +117,7 @@ mod tests {
         fn items_are_sorted_to_a_part_of_their_extent_and_none_is_lost(
             places in prop::collection::vec(-50.0f32..70.0, WIDTH + 1..=FEW),
         ) {
-            for arithmetic in Arithmetic::available() {
+            for arithmetic in Available::all() {
                 let mut items = items(&places);
                 let around = places_of(&items);
                 prop_assert!(sort(&mut items, &around, arithmetic));
@@ -140,7 +140,7 @@ mod tests {
             let places: Vec<f32> = (first..40).map(far).collect();
             let mut items = items(&places);
             let around = places_of(&items);
-            let Divided { at, sides } = divide(&mut items, &around, Arithmetic::of_this_cpu());
+            let Divided { at, sides } = divide(&mut items, &around, Available::newest());
             assert_eq!(at, 24 - usize::from(first));
             assert_eq!(sides.map(|side| side.longest().1), [4.0, 2.0]);
         }
@@ -150,6 +150,6 @@ mod tests {
     fn items_in_one_place_are_halved() {
         let mut items = items(&[7.0; 80]);
         let around = places_of(&items);
-        assert_eq!(divide(&mut items, &around, Arithmetic::of_this_cpu()).at, 40);
+        assert_eq!(divide(&mut items, &around, Available::newest()).at, 40);
     }
 }

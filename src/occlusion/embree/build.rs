@@ -3,14 +3,15 @@
 use std::collections::HashMap;
 use std::num::NonZeroU32;
 use std::ops::Range;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use embree_ffi::{BuildQuality, Device, DeviceConfig, Mesh, SceneBuilder, SceneOptions};
 use glam::Vec3;
 
-use super::{Embree, OPAQUE, TRANSPARENT};
+use super::{Cells, Embree, OPAQUE, TRANSPARENT};
 use crate::geometry::lanes::Arithmetic;
 use crate::geometry::{TriangleId, Triangles};
+use crate::occlusion::embree_bounds::at_least;
 use crate::occlusion::transparent::is_transparent_apart;
 
 pub use embree_ffi::Isa;
@@ -112,8 +113,9 @@ impl Embree {
         let firsts = meshes.iter().map(|mesh| mesh.first).collect();
         // What Embree reports includes the copies of vertices and indices; its structure is the rest.
         let bytes = device.memory_used().saturating_sub(copied);
-        let (scene, companion) = (Arc::new(scene), Arc::new(OnceLock::new()));
-        Ok(Self { triangles, scene, transparent, firsts, options, robust, bytes, companion })
+        let (scene, cells) = (Arc::new(scene), Arc::new(Cells::new(triangles.clone())));
+        let at_least = at_least(&triangles, cells.clone(), robust, options.arithmetic()).into();
+        Ok(Self { triangles, scene, transparent, firsts, options, bytes, cells, at_least })
     }
 }
 

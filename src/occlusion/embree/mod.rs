@@ -3,7 +3,7 @@
 //! Embree decides by its own arithmetic: [`Test::Pluecker`](super::Test::Pluecker) stands for its robust
 //! mode, [`Test::Moller`](super::Test::Moller) for its default one. It shows no leaves, so the occluder's
 //! identity comes from an argument filter, and its *cell* is that of a companion grid, found by the hit
-//! point; that grid is built when a memory first needs it, and not otherwise. What a memory
+//! point; that grid is built when a memory first needs cells, and not otherwise (`cells`). What a memory
 //! in front of Embree tests is the lower bound of Embree's own answer (`geometry::intersect::embree`), so
 //! that it never says "blocked" where Embree would not.
 //!
@@ -11,17 +11,19 @@
 //! lesser part, in a second scene too, as a ray masked for them comes to all that is opaque on its way.
 
 mod build;
+mod cells;
 mod packets;
 
 use std::num::NonZeroU32;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use embree_ffi::{Hit, Ray as EmbreeRay, Scene, Verdict};
 
-use super::embree_bounds::at_least;
 use super::nearest::distance;
-use super::{Cell, LeftOut, Nearest, NestedGrid, Occluder, Occlusion, Tally};
+use super::{Cell, LeftOut, Nearest, Occluder, Occlusion, Tally};
 use crate::geometry::{Ray, TriangleId, Triangles};
+
+use cells::Cells;
 
 pub use build::{EmbreeOptions, Isa, PacketWidth, Quality};
 
@@ -39,16 +41,10 @@ pub struct Embree {
     /// First triangle of each geometry.
     firsts: Vec<TriangleId>,
     options: EmbreeOptions,
-    robust: bool,
     bytes: usize,
-    companion: Arc<OnceLock<Companion>>,
-}
-
-/// The grid whose cells stand in for Embree's leaves.
-struct Companion {
-    grid: Arc<NestedGrid>,
-    /// The grid with the lower bound of Embree's answer as its test.
-    at_least: Box<dyn Occlusion>,
+    cells: Arc<Cells>,
+    /// The lower bound of Embree's answer, which walks through the cells.
+    at_least: Arc<dyn Occlusion>,
 }
 
 impl Embree {
@@ -68,7 +64,8 @@ impl Embree {
             transparent: self.transparent.clone(),
             firsts: self.firsts.clone(),
             options: EmbreeOptions { width, coherent, ..self.options },
-            companion: self.companion.clone(),
+            cells: self.cells.clone(),
+            at_least: self.at_least.clone(),
             ..*self
         })
     }
@@ -81,15 +78,6 @@ impl Embree {
 
     fn triangle(&self, hit: &Hit) -> TriangleId {
         self.firsts[hit.geometry as usize] + hit.primitive
-    }
-
-    fn companion(&self) -> &Companion {
-        self.companion.get_or_init(|| {
-            let grid = Arc::new(NestedGrid::new(&self.triangles));
-            let at_least =
-                at_least(&self.triangles, grid.clone(), self.robust, self.options.arithmetic());
-            Companion { grid, at_least }
-        })
     }
 
     /// Counts a query; whether the ray can be answered.
@@ -108,7 +96,7 @@ impl Occlusion for Embree {
         }
         let hit = self.scene.occluder(&Self::ray(ray, OPAQUE))?;
         let triangle = self.triangle(&hit);
-        let cell = self.companion().grid.cell_with(triangle, ray.at(f64::from(hit.t)));
+        let cell = self.cells.at(triangle, ray.at(f64::from(hit.t)));
         Some(Occluder { triangle, cell })
     }
 
@@ -126,7 +114,7 @@ impl Occlusion for Embree {
     }
 
     fn occluder_in(&self, cell: Cell, ray: &Ray, tally: &mut Tally) -> Option<Occluder> {
-        self.companion().at_least.occluder_in(cell, ray, tally)
+        self.at_least.occluder_in(cell, ray, tally)
     }
 
     fn occluder_except(
@@ -137,7 +125,7 @@ impl Occlusion for Embree {
         tally: &mut Tally,
     ) -> Option<Occluder> {
         if within.is_some() {
-            return self.companion().at_least.occluder_except(ray, within, left_out, tally);
+            return self.at_least.occluder_except(ray, within, left_out, tally);
         }
         if !Self::admit(ray, tally) {
             return None;
@@ -153,12 +141,12 @@ impl Occlusion for Embree {
             Verdict::Accept
         });
         let (triangle, t) = found?;
-        let cell = self.companion().grid.cell_with(triangle, ray.at(f64::from(t)));
+        let cell = self.cells.at(triangle, ray.at(f64::from(t)));
         Some(Occluder { triangle, cell })
     }
 
     fn meets(&self, triangle: TriangleId, ray: &Ray, tally: &mut Tally) -> bool {
-        self.companion().at_least.meets(triangle, ray, tally)
+        self.at_least.meets(triangle, ray, tally)
     }
 
     fn transparent(&self, ray: &Ray, found: &mut Vec<TriangleId>, tally: &mut Tally) {
@@ -191,14 +179,14 @@ impl Occlusion for Embree {
     }
 
     fn order(&self) -> &[TriangleId] {
-        self.companion().at_least.order()
+        self.at_least.order()
     }
 
     fn has_cells(&self) -> bool {
-        self.companion.get().is_some()
+        self.cells.are_there()
     }
 
     fn memory(&self) -> usize {
-        self.bytes + self.companion.get().map_or(0, |companion| companion.at_least.memory())
+        self.bytes + self.at_least.memory()
     }
 }

@@ -47,9 +47,10 @@ fn count(
     counts: &[AtomicU32],
     most: u32,
 ) -> Result<(), TooFine> {
-    let (most, entries, tried) = (u64::from(most), AtomicU64::new(0), AtomicUsize::new(0));
+    let (entries, tried) = (AtomicU64::new(0), AtomicUsize::new(0));
+    let are_too_many = |entries: u64| entries > u64::from(most);
     (0..triangles.len() as TriangleId).into_par_iter().for_each(|id| {
-        if entries.load(Relaxed) > most {
+        if are_too_many(entries.load(Relaxed)) {
             return;
         }
         let mut voxels = 0;
@@ -61,11 +62,12 @@ fn count(
         tried.fetch_add(1, Relaxed);
     });
     let (entries, tried) = (entries.into_inner(), tried.into_inner());
-    if entries <= most {
+    if !are_too_many(entries) {
         return Ok(());
     }
     let share = triangles.len() as f64 / tried as f64;
-    Err(TooFine { resolution: level.resolution, entries: (entries as f64 * share) as u64 })
+    let entries = (entries as f64 * share) as u64;
+    Err(TooFine { resolution: level.resolution, entries, most })
 }
 
 /// Sorts each voxel's list, so that the grid does not depend on which thread came first.
@@ -105,7 +107,11 @@ mod tests {
         assert!((32_000..=64_000).contains(&entries), "{entries}");
         assert!(build(&triangles, grid.level.clone(), entries).is_ok());
         let refused = build(&triangles, grid.level.clone(), entries / 10).err().unwrap();
-        assert_eq!((refused.resolution, refused.entries), ([8, 8, 1], u64::from(entries)));
-        assert!(refused.to_string().contains("8x8x1 voxels would list triangles some"));
+        let (entries, most) = (u64::from(entries), entries / 10);
+        assert_eq!(refused, TooFine { resolution: [8, 8, 1], entries, most });
+        let line = format!(
+            "a grid of 8x8x1 voxels would list triangles some {entries} times, which is more than {most}; give --grid fewer voxels"
+        );
+        assert_eq!(refused.to_string(), line);
     }
 }

@@ -1,15 +1,19 @@
-//! The grid: voxels with lists of triangles, walked in order along the ray.
+//! The grids: voxels that hold triangles.
 //!
-//! A uniform grid ([`Grid`]) is fast to build, and its voxels are the neighbourhoods that the paper's caches
-//! remember; but one resolution cannot serve a scene with uneven detail. So a crowded voxel holds a grid of its own, and so
-//! on (adaptive voxel subdivision, Jevans & Wyvill 1989): [`NestedGrid`] is that from the scene's box down, with small
-//! grids whose voxels a ray finds all at once; [`DividedGrid`] is a uniform grid of a given resolution with nested grids
-//! in its crowded voxels, beforehand or when a ray first comes.
+//! One resolution cannot serve a scene with uneven detail, so a crowded voxel holds a grid of its own, and so on (adaptive voxel
+//! subdivision, Jevans & Wyvill 1989).
 //!
-//! Exact, because nothing is lost: a triangle is listed in every voxel that it comes within
+//! * [`NestedGrid`], the default, is that from the scene's box down: small grids, whose voxels a ray finds all at once. They are loose: each
+//!   triangle is stored once, in the voxel that its middle is in, and what a voxel holds has a box of its own.
+//! * [`Grid`] is uniform (`--uniform`): each triangle is listed in every voxel that it touches, and a ray walks through these in order. It is
+//!   fast to build, and its voxels are the neighbourhoods that the paper's caches remember.
+//! * [`DividedGrid`] is a uniform grid with nested grids in its crowded voxels: where a resolution is asked for, and where voxels are to be
+//!   divided when a ray first comes (`--lazy`).
+//!
+//! Exact, because nothing is lost: a uniform grid lists a triangle in every voxel that it comes within
 //! [`PADDING`] of a voxel's side of (`voxelize`), and the walk errs by much less (`steps`): wherever
 //! rounding makes it pass a corner on the wrong side, the voxel it takes instead lists the triangle too. Nested grids
-//! have a padding of their own.
+//! have a padding of their own (`nested`).
 //!
 //! Fujimoto, Tanaka, Iwata: ARTS: Accelerated Ray-Tracing System. IEEE CG&A 6(4), 1986.
 //! Amanatides, Woo: A Fast Voxel Traversal Algorithm for Ray Tracing. Eurographics 1987.
@@ -107,7 +111,7 @@ impl GridOptions {
 /// A grid of this resolution would have too many entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a grid of {}x{}x{} voxels would list triangles some {entries} times, which is more than {MOST_ENTRIES_ASKED}; give --grid fewer voxels",
+    "a grid of {}x{}x{} voxels would list triangles some {entries} times, which is more than {most}; give --grid fewer voxels",
     .resolution[0], .resolution[1], .resolution[2]
 )]
 pub struct TooFine {
@@ -115,6 +119,8 @@ pub struct TooFine {
     pub resolution: [u32; 3],
     /// Entries that there would be, from those of the triangles that were tried.
     pub entries: u64,
+    /// Entries that there may be.
+    pub most: u32,
 }
 
 /// Why there is no grid of the resolution that was asked for.

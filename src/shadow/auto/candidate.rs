@@ -8,13 +8,14 @@ use crate::shadow::{
     Combination, Method, Prepared, SelfShadow, VerdictKind, VerdictReport, VerdictSet,
 };
 
-/// Nanoseconds a triangle to group triangles into clusters, of all threads together: 100 to 190 (docs/growth.md).
+/// Nanoseconds a triangle to group triangles into clusters, of all threads together: near the most that was seen, as what is thought
+/// too cheap is built too early, and what it did cost is known only afterwards.
 const CLUSTERS: f64 = 180.0;
 
-/// Nanoseconds a triangle to sort clusters by the directions of a light (docs/growth.md).
+/// Nanoseconds a triangle to sort clusters by the directions of a light: a first guess, which what the first light took replaces.
 const LIGHT_MAP: f64 = 10.0;
 
-/// Nanoseconds a triangle before a memory can be asked over a backend without cells: Embree needs a grid beside it.
+/// Nanoseconds a triangle before a memory of cells can be asked over a backend without them: Embree needs a grid beside it.
 const CELLS: f64 = 1000.0;
 
 /// A method that is prepared when it is worth it.
@@ -46,7 +47,7 @@ impl Candidate<'_> {
         let triangles = triangles as f64;
         let scene = match self.combination.method {
             Method::Trace if self.needs_clusters() => CLUSTERS,
-            Method::Trace => 0.0,
+            Method::Trace | Method::ObjectCache => 0.0,
             _ if backend.has_cells() => 0.0,
             _ => CELLS,
         };

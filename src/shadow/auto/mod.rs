@@ -16,7 +16,10 @@ mod policy;
 mod statistics;
 mod worker;
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{
+    AtomicBool, AtomicUsize,
+    Ordering::{Acquire, Relaxed, Release},
+};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
@@ -141,7 +144,9 @@ impl<'a> Auto<'a> {
 
     /// Whom to ask queries at a place.
     fn choose(&self, light: usize, place: u32, queries: usize) -> Choice {
-        self.prepare_what_is_worth_it();
+        if self.worth_preparing().is_some() {
+            self.prepare_what_is_worth_it();
+        }
         let Ok(policy) = self.policy.try_lock() else {
             return Choice::again(self.latest[light].load(Relaxed));
         };
@@ -150,13 +155,18 @@ impl<'a> Auto<'a> {
         choice
     }
 
+    fn worth_preparing(&self) -> Option<usize> {
+        self.policy.try_lock().ok()?.worth_preparing()
+    }
+
+    /// Nobody waits: preparing may use all threads, and one that waited could be needed for it.
     fn prepare_what_is_worth_it(&self) {
-        let worth = self.policy.try_lock().ok().and_then(|policy| policy.worth_preparing());
-        let Some(candidate) = worth else { return };
-        // Nobody waits: preparing may use all threads, and one that waited could be needed for it.
-        if self.preparing.swap(true, Relaxed) {
+        if self.preparing.swap(true, Acquire) {
             return;
         }
+        let _turn = Turn(&self.preparing);
+        // Only now: whoever had the turn before may have prepared what was worth it until then, and what it took must stand.
+        let Some(candidate) = self.worth_preparing() else { return };
         let start = (self.clock)();
         self.prepared(candidate);
         let nanoseconds = (self.clock)().saturating_sub(start);
@@ -166,7 +176,6 @@ impl<'a> Auto<'a> {
         let others: Vec<usize> = (0..self.candidates.len()).filter(share).collect();
         let mut policy = self.policy.lock().unwrap_or_else(PoisonError::into_inner);
         policy.prepare(candidate, nanoseconds as f64, &others);
-        self.preparing.store(false, Relaxed);
     }
 
     /// Takes note of what a batch cost, unless the policy is busy.
@@ -183,6 +192,15 @@ impl<'a> Auto<'a> {
         let along = |share: f32| ((share * PLACES as f32) as u32).min(PLACES - 1);
         let [x, y, z] = share.to_array().map(along);
         ((z * PLACES + y) * PLACES + x) << 1 | u32::from(query.path.level() > 0)
+    }
+}
+
+/// The turn to prepare, which ends in a panic too.
+struct Turn<'a>(&'a AtomicBool);
+
+impl Drop for Turn<'_> {
+    fn drop(&mut self) {
+        self.0.store(false, Release);
     }
 }
 
@@ -226,3 +244,6 @@ impl Prepared for Auto<'_> {
         self.plan.self_shadow == SelfShadow::Exclude
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -21,8 +21,10 @@
 //!    no cache knows anything of what was built.
 //!
 //! **Bound.** With costs that stay the same, the time of all queries is at most (2 + 1/√b) times that of the best single
-//! candidate in hindsight, building included, and (1 + 1/√b) times where nothing has to be built; and besides,
-//! one batch of each candidate, and the first calls of what was bought. Rule 3 gives the 2: when a structure is bought for B, B was lost by not having it, and
+//! candidate in hindsight, building included, and (1 + 1/√b) / (1 − 1/√b) times where nothing has to be built, or twice 1 + 1/√b while
+//! that is less; and besides, one batch of each candidate, and the first calls of what was bought. A first trial is not foreseen, though: where it
+//! is dearer than all that was spent, the others are not tried until 1/√b of the time makes up for it, and for that there is no
+//! bound. Rule 3 gives the 2: when a structure is bought for B, B was lost by not having it, and
 //! the best in hindsight has paid B or that; on a true word it is 1.62 + 8/√b. Rule 2 gives
 //! the rest. Costs that change are followed, as the estimates
 //! fade (`estimate`), without a bound.
@@ -49,8 +51,8 @@ const MOST_SURPRISE: f64 = 8.0;
 /// Calls, whole, that go to what was bought. By one alone, whatever disturbed it would decide for long.
 const FIRST_CALLS: u32 = 4;
 
-/// What a light's structure that was never seen is taken to cost a query, as a share of what others need:
-/// structures for lights were not seen to save more than half (docs/methods.md).
+/// What a light's structure that was never seen is taken to cost a query, as a share of what others need: so little that it gets a
+/// chance, and no less, as it would be built then where few queries come.
 const UNSEEN: f64 = 0.5;
 
 /// What is known of a candidate beforehand.

@@ -24,9 +24,9 @@ pub struct LightChoices {
 pub struct CandidateShare {
     /// Its name.
     pub method: String,
-    /// Queries that it answered, and those of them in trials.
+    /// Queries that it answered, trials included.
     pub queries: u64,
-    /// Queries that it answered to see what it costs.
+    /// Those of them that it answered to see what it costs.
     pub trials: u64,
     /// Nanoseconds that a query is expected to cost it at this light; none if that was never seen.
     pub nanoseconds_a_query: Option<f64>,

@@ -4,7 +4,7 @@
 //! nothing is traversed.
 //!
 //! Wins where many queries go to a light: a query tests the few clusters that its cell shows, with one
-//! vector test each, and it is the one method here that proves points *lit*. Costs a structure a
+//! vector test each, and if none of them blocks it is proven lit. Costs a structure a
 //! light; so blocks of cells are made when a query first asks them, and nothing for directions that no
 //! query comes from. Lists hold clusters of eight triangles (`occlusion::clusters`), and sixteen bits an entry say
 //! in which sixteenths of the cell the cluster is seen at all. Where one triangle covers a whole cell, all queries
@@ -34,7 +34,7 @@ use super::{Budget, ShadowQuery, Verdict};
 use crate::exact::Exact;
 use crate::geometry::Triangles;
 use crate::geometry::intersect::RayLanes;
-use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
+use crate::geometry::lanes::{Available, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally, WIDTH};
 use crate::scene::Light;
 
@@ -47,7 +47,7 @@ pub(super) struct LightBuffer {
     /// What is said then.
     aside: Option<String>,
     maps: Vec<OnceLock<Option<LightMap>>>,
-    arithmetic: Arithmetic,
+    arithmetic: Available,
     budget: Arc<Budget>,
     bytes: AtomicUsize,
     /// Of blocks: their bytes, and the clusters in them.
@@ -72,7 +72,7 @@ impl LightBuffer {
             }),
             clusters,
             maps: scene.lights.iter().map(|_| OnceLock::new()).collect(),
-            arithmetic: Arithmetic::of_this_cpu(),
+            arithmetic: Available::newest(),
             budget: budget.clone(),
             bytes: AtomicUsize::new(bytes),
             block_bytes: AtomicUsize::new(0),

@@ -14,7 +14,7 @@ use crate::shadow::{Panes, ShadowQuery};
 /// A bundle whose packets are on average larger than this part of it is not kept together by halving it.
 const SPREAD_WHOLE: f32 = 0.4;
 
-/// And one whose packets are so many times larger than clusters: shafts that wide are full of them.
+/// A bundle is spread too if its packets are this many times larger than a cluster: such shafts meet too many clusters.
 const SPREAD_CLUSTERS: f32 = 16.0;
 
 /// Largest coordinates of bundles that are answered here: products of four of them stay within f32.

@@ -129,7 +129,7 @@ mod tests {
     use super::super::strategies::point;
     use super::*;
     use crate::geometry::Triangles;
-    use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
+    use crate::geometry::lanes::{Available, Lanes, LanesJob};
     use crate::occlusion::Clusters;
 
     /// A triangle, a light, and sixteen packets of origins, each around a place.
@@ -198,7 +198,7 @@ mod tests {
         let canopy = [corner(-100.0, -100.0), corner(100.0, -100.0), corner(0.0, 200.0)];
         // Over most of the first square, and a little of two beside it.
         let parasol = [corner(-9.0, -9.0), corner(-2.0, -9.0), corner(-9.0, -2.0)];
-        for arithmetic in Arithmetic::available() {
+        for arithmetic in Available::all() {
             let (under, _) = arithmetic.run(Case { triangle: canopy, light, packets: floor() });
             assert_eq!((under.touched, under.covered), (u16::MAX, u16::MAX), "{arithmetic:?}");
             let (some, _) = arithmetic.run(Case { triangle: parasol, light, packets: floor() });
@@ -224,7 +224,7 @@ mod tests {
                 }
                 rows
             };
-            for arithmetic in Arithmetic::available() {
+            for arithmetic in Available::all() {
                 let packets = places.iter().map(packet).collect();
                 let (judged, casts) = arithmetic.run(Case { triangle, light, packets });
                 for (place, cast) in casts.iter().enumerate() {

@@ -16,7 +16,7 @@
 //!
 //! Both sides of a comparison err, each by its own plane, and each plane is moved by [`PAD`]: 16.
 //!
-//! Haines, Wallace: Shaft Culling for Efficient Ray-Traced Radiosity. Eurographics Workshop on Rendering 1991.
+//! Haines, Wallace: Shaft Culling for Efficient Ray-Cast Radiosity. Eurographics Workshop on Rendering 1991.
 
 use glam::Vec3;
 

@@ -7,7 +7,8 @@ use crate::occlusion::Cluster;
 /// Clusters whose planes are kept. 130 KiB.
 const KEPT: usize = 256;
 
-const NOBODY: u32 = u32::MAX;
+/// No cluster has this number.
+const NO_CLUSTER: u32 = u32::MAX;
 
 /// Planes of clusters that were tested of late.
 pub(super) struct Kept {
@@ -20,14 +21,14 @@ pub(super) struct Kept {
 
 impl Kept {
     pub const fn none() -> Self {
-        Self { planes: [const { Planes::EMPTY }; KEPT], clusters: [NOBODY; KEPT], ground: None }
+        Self { planes: [const { Planes::EMPTY }; KEPT], clusters: [NO_CLUSTER; KEPT], ground: None }
     }
 
     /// From now on, planes are for this ground.
     pub fn stand_on(&mut self, ground: &Ground) {
         if self.ground != Some(*ground) {
             self.ground = Some(*ground);
-            self.clusters = [NOBODY; KEPT];
+            self.clusters = [NO_CLUSTER; KEPT];
         }
     }
 

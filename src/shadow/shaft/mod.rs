@@ -15,7 +15,7 @@
 //! Exact: a query is settled by a plane that is certain by more than its error bound (`planes`), else by the
 //! exact test. Rays that are not to their light, bit for bit, are passed on.
 //!
-//! Haines, Wallace: Shaft Culling for Efficient Ray-Traced Radiosity. Eurographics Workshop on Rendering 1991.
+//! Haines, Wallace: Shaft Culling for Efficient Ray-Cast Radiosity. Eurographics Workshop on Rendering 1991.
 //! Dmitriev, Havran, Seidel: Faster Ray Tracing with SIMD Shaft Culling. MPI-I-2004-4-006, 2004.
 
 mod bundle;
@@ -42,7 +42,7 @@ use walk::{Around, Walker};
 use super::stock::Stock;
 use super::{Glass, Panes, ShadowQuery, Verdict, VerdictKind};
 use crate::geometry::Triangles;
-use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
+use crate::geometry::lanes::{Available, Lanes, LanesJob};
 use crate::occlusion::{Clusters, Tally};
 
 /// Bundles whose packets are larger than so many clusters are put together anew, by direction,
@@ -66,7 +66,7 @@ pub(super) struct Shafts {
     glass: Option<Box<Self>>,
     /// Whether bundles that do not stay together are left to a light buffer.
     leaves_spread: bool,
-    arithmetic: Arithmetic,
+    arithmetic: Available,
     /// Walkers that nobody uses now; as many are made as threads ask at once, 150 KiB each and some 28 bytes a query
     /// of the largest call.
     idle: Mutex<Vec<Box<Walker>>>,
@@ -98,7 +98,7 @@ impl Shafts {
             bytes,
             glass,
             leaves_spread,
-            arithmetic: Arithmetic::of_this_cpu(),
+            arithmetic: Available::newest(),
             idle: Mutex::new(Vec::new()),
         }
     }

@@ -172,7 +172,7 @@ mod tests {
     use super::super::columns::Read;
     use super::*;
     use crate::geometry::Ray;
-    use crate::geometry::lanes::Arithmetic;
+    use crate::geometry::lanes::Available;
     use crate::shadow::{Path, ShadowQuery};
 
     const LIGHT: Vec3 = Vec3::new(1.0, 2.0, 50.0);
@@ -186,7 +186,7 @@ mod tests {
     const SOURCE: Source = Source::Point(LIGHT);
 
     /// The places of queries in order, all packets sorted.
-    fn sorted(arithmetic: Arithmetic, queries: &[ShadowQuery]) -> Vec<u32> {
+    fn sorted(arithmetic: Available, queries: &[ShadowQuery]) -> Vec<u32> {
         let mut columns = Columns::default();
         arithmetic.run(Read { columns: &mut columns, source: &SOURCE, queries });
         let packets = (0..columns.asked.len() as u32).collect();
@@ -220,7 +220,7 @@ mod tests {
             Vec3::new((number % 16) as f32, (number / 16 % 16) as f32, -((number / 256) as f32))
         };
         let queries = queries((0..1000).map(origin));
-        for arithmetic in Arithmetic::available() {
+        for arithmetic in Available::all() {
             let places = sorted(arithmetic, &queries);
             let mut all = places.clone();
             all.sort_unstable();
@@ -243,7 +243,7 @@ mod tests {
             queries[place].ray.direction.y += 1.0;
         }
         queries[70].ray.origin.x = f32::NAN;
-        for arithmetic in Arithmetic::available() {
+        for arithmetic in Available::all() {
             let mut places = sorted(arithmetic, &queries);
             places.sort_unstable();
             let expected = |place: &u32| ![0, 15, 16, 50, 70, 99].contains(place);
@@ -254,7 +254,7 @@ mod tests {
     #[test]
     fn queries_that_all_start_in_one_point_keep_their_order() {
         let queries = queries(std::iter::repeat_n(Vec3::ONE, 40));
-        for arithmetic in Arithmetic::available() {
+        for arithmetic in Available::all() {
             assert_eq!(sorted(arithmetic, &queries), (0..40).collect::<Vec<u32>>());
         }
     }

@@ -176,7 +176,7 @@ mod tests {
     use super::super::bundle::PACKET;
     use super::super::strategies::point;
     use super::*;
-    use crate::geometry::lanes::{Arithmetic, Lanes, LanesJob};
+    use crate::geometry::lanes::{Available, Lanes, LanesJob};
 
     struct Seen<'a>(&'a Perspective, &'a [Row; 3]);
 
@@ -219,7 +219,7 @@ mod tests {
         let around = OriginBox { low: least, high: greatest };
         let perspective = Perspective::new(source, &around);
         let mut seen = false;
-        for arithmetic in Arithmetic::available() {
+        for arithmetic in Available::all() {
             let (view, _) = arithmetic.run(Seen(&perspective, &rows(&origins)));
             let Some(base) = perspective.base(&view, centre) else { continue };
             seen = true;
@@ -280,7 +280,7 @@ mod tests {
         let place = light + Vec3::new(0.3, 5.0, 0.1);
         let there = OriginBox { low: place, high: place };
         let perspective = Perspective::new(&Source::Point(light), &there);
-        for arithmetic in Arithmetic::available() {
+        for arithmetic in Available::all() {
             let (_, [x, y]) = arithmetic.run(Seen(&perspective, &rows(&origins)));
             for (lane, way) in ways.iter().enumerate() {
                 let radius = x.0[lane].abs() + y.0[lane].abs();

@@ -3,10 +3,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::geometry::{TriangleId, Triangles, is_finite};
-
-/// No triangle has this id.
-const NOBODY: TriangleId = TriangleId::MAX;
+use crate::geometry::{NOBODY, TriangleId, Triangles, is_finite};
 
 /// For each edge of each opaque triangle, the one other triangle that has an edge between the same two
 /// points, if it is one. Those that are not finite, which block nothing, are nobody's neighbours.

@@ -6,8 +6,7 @@
 //! direction, at corners of the same kind (both the lower left ones, say). All tests are in f64, and
 //! what rounding errs by is many times less than what the boxes are widened by.
 //!
-//! Haines, Wallace: Shaft Culling for Efficient Ray-Cast Radiosity. Photorealistic Rendering in Computer
-//! Graphics (Eurographics Workshop on Rendering 1991), 1994.
+//! Haines, Wallace: Shaft Culling for Efficient Ray-Cast Radiosity. Eurographics Workshop on Rendering 1991.
 
 use std::ops::ControlFlow;
 

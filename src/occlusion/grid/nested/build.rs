@@ -20,7 +20,7 @@ use super::group::{GROUP, Group};
 use super::sort::{Extent, Lattice};
 use super::walk::MOST_DEPTH;
 use super::{Cube, MOST, NestedGrid, Node, SLOTS, Threads};
-use crate::geometry::lanes::Arithmetic;
+use crate::geometry::lanes::Available;
 use crate::geometry::{Bounds, TriangleId, Triangles, is_finite};
 use crate::occlusion::Eight;
 use crate::occlusion::eight::WIDTH;
@@ -325,7 +325,7 @@ impl<'a> Sorter<'a> {
         grid.nodes.shrink_to_fit();
         grid.groups.shrink_to_fit();
         grid.order.shrink_to_fit();
-        let arithmetic = Arithmetic::of_this_cpu();
+        let arithmetic = Available::newest();
         let (ids, _) = grid.order.as_chunks::<WIDTH>();
         let eight = |ids| Eight::new(self.triangles, ids, arithmetic);
         grid.eights = ids.par_iter().with_min_len(self.threads.least()).map(eight).collect();

@@ -1,5 +1,5 @@
-//! Grids within grids: every crowded voxel holds a grid of its own, of at most 4×4×4 voxels, fitted to what it
-//! holds.
+//! Grids within grids: every crowded voxel holds a grid of its own, of some 32 voxels at most, no more than
+//! 4 along an axis, fitted to what it holds.
 //!
 //! A recursive grid (Jevans & Wyvill 1989) with small grids, and a loose one (Ulrich 2000): each triangle belongs to the one
 //! voxel that its middle is in. Where the ray goes is not stepped through: what the voxels hold, eights of triangles and grids,
@@ -44,13 +44,13 @@ use group::{GROUP, Group};
 
 use crate::geometry::lanes::Lanes;
 use crate::geometry::{Bounds, Ray, TriangleId, Triangles};
-use crate::occlusion::clip::{Clip, clip};
+use crate::occlusion::clip::{Clip, LEAST_EXTENT, clip};
 use crate::occlusion::{Cell, Eight, Visit, VisitMany, Walk};
 
 /// How far from its place the walk may take a point to be; see the table above.
 const MISPLACED: f32 = 1.0 / (1 << 19) as f32;
 
-/// Voxels along an axis of one grid at most: 64 in all, a bit each.
+/// Voxels along an axis of one grid at most. Of the 64 that there are numbers for, it has some half at most (`build`).
 const MOST: u32 = 4;
 
 /// Things that the voxels of one grid may hold: a bit each.
@@ -94,11 +94,9 @@ struct Cube {
 impl Cube {
     /// The cube over what is in a box; what a test may err by is that of the whole scene.
     fn over(bounds: Option<Bounds>, slack: f64) -> Self {
-        /// A scene that is one point has some side too.
-        const LEAST: f64 = 1e-60;
         let bounds = bounds.unwrap_or_default();
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        let side = (max - min).max_element().max(slack).max(LEAST);
+        let side = (max - min).max_element().max(slack).max(LEAST_EXTENT);
         let scale = side.recip();
         // Rounded up: what is a little wider loses nothing.
         let padding = MISPLACED + (slack * scale * (1.0 + f64::from(f32::EPSILON))) as f32;

@@ -83,7 +83,7 @@ impl World {
         (0..self.scene.len()).map(single).fold(f64::INFINITY, f64::min)
     }
 
-    /// One batch of each candidate, the dearest.
+    /// What the first batch of every candidate costs together.
     fn first_batches(&self) -> f64 {
         (0..self.scene.len()).map(|candidate| (self.cost)(0, 0, 0, candidate) * BATCH).sum()
     }
@@ -102,8 +102,8 @@ fn regret_is_a_root_of_the_batches_where_nothing_is_built() {
         for batches in [1, 10, 100, 1_000, 100_000] {
             let (total, _) = world.run(batches);
             let share = 1.0 / (batches as f64).sqrt();
-            let bound = world.hindsight(batches) * (1.0 + share) / (1.0 - share).max(0.5);
-            let bound = bound + world.first_batches();
+            let factor = (1.0 + share) / (1.0 - share).max(0.5);
+            let bound = world.hindsight(batches) * factor + world.first_batches();
             assert!(total <= bound, "{batches} batches: {total} of {bound}");
         }
     }
