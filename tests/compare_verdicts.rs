@@ -4,6 +4,7 @@
 
 mod common;
 
+use std::f32::consts::TAU;
 use std::sync::atomic::AtomicU64;
 
 use common::Random;
@@ -26,7 +27,7 @@ fn slivers() -> Scene {
     let mut random = Random(71);
     let mut sliver = || {
         let tip = Vec3::new(random.between(-2.0, 2.0), random.unit(), random.between(-2.0, 2.0));
-        let (angle, length) = (random.between(0.0, 6.28), random.between(0.2, 4.0));
+        let (angle, length) = (random.between(0.0, TAU), random.between(0.2, 4.0));
         let end = |angle: f32| tip + length * Vec3::new(angle.cos(), 0.0125, angle.sin());
         [tip, end(angle), end(angle + 1e-5)]
     };
