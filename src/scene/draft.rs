@@ -9,6 +9,7 @@ use super::{
     light::{is_colour, is_exposure},
     material::listed,
     sensible,
+    words::counted,
 };
 use crate::geometry::{Triangle, Triangles};
 
@@ -87,8 +88,10 @@ pub struct Draft {
     pub camera: Option<Camera>,
     /// Which way is up, for a sensible camera; guessed from the shape of the scene if unknown.
     pub up: Option<DVec3>,
-    /// Whether `ambient` and `background` are to be chosen, for files that say nothing about them.
-    pub choose_surroundings: bool,
+    /// Whether `ambient` is to be chosen, for files that say nothing about it.
+    pub choose_ambient: bool,
+    /// Whether `background` is to be chosen, for files that say nothing about it.
+    pub choose_background: bool,
     /// See [`Scene::ambient`].
     pub ambient: Vec3,
     /// See [`Scene::background`].
@@ -159,12 +162,13 @@ impl Draft {
             }
         }
         if self.dropped.total() > 0 {
-            self.notes.push(format!("dropped {} faces: {}", self.dropped.total(), self.dropped));
+            let faces = counted(self.dropped.total(), "face", "faces");
+            self.notes.push(format!("dropped {faces}: {}", self.dropped));
         }
         if opaque.is_empty() && seen_through.is_empty() {
             let dropped = match self.dropped.total() {
                 0 => String::new(),
-                n => format!(" left of {n} faces: {}", self.dropped),
+                n => format!(" left of {}: {}", counted(n, "face", "faces"), self.dropped),
             };
             return Err(SceneError::Empty { name: self.name, dropped });
         }
@@ -206,10 +210,21 @@ impl Draft {
         if scene.lights.is_empty() {
             sensible::add_lights(&mut scene);
         }
-        if self.choose_surroundings {
-            sensible::choose_surroundings(&mut scene);
+        if self.choose_ambient {
+            sensible::choose_ambient(&mut scene);
+        }
+        if self.choose_background {
+            sensible::choose_background(&mut scene);
         }
         Ok(scene)
+    }
+
+    /// Says something once, however often it is found.
+    pub(super) fn note(&mut self, text: impl AsRef<str>) {
+        let text = text.as_ref();
+        if !self.notes.iter().any(|note| note == text) {
+            self.notes.push(text.to_owned());
+        }
     }
 
     /// Numbers that are not finite must not reach a renderer.
@@ -217,10 +232,8 @@ impl Draft {
         let count = self.lights.len();
         self.lights.retain(Light::is_sound);
         if self.lights.len() < count {
-            self.notes.push(format!(
-                "left out {} lights whose numbers make no sense",
-                count - self.lights.len()
-            ));
+            let lights = counted((count - self.lights.len()) as u64, "light", "lights");
+            self.notes.push(format!("left out {lights} whose numbers make no sense"));
         }
         if self.camera.is_some_and(|camera| !camera.is_sound()) {
             self.notes.push("left out a camera whose numbers make no sense".to_owned());
@@ -261,7 +274,7 @@ impl Draft {
     /// The same for light from everywhere and for the factor to picture values.
     fn drop_unsound_surroundings(&mut self) {
         if !is_colour(&self.ambient) || !is_colour(&self.background) {
-            self.choose_surroundings = true;
+            (self.choose_ambient, self.choose_background) = (true, true);
             self.notes.push(
                 "left out the ambient light and the background: the numbers of one make no sense"
                     .to_owned(),

@@ -55,23 +55,21 @@ impl Material {
         self.transmission != Vec3::ZERO
     }
 
-    /// The same material with every number as a description may give it: shares from 0 to 1, the others
-    /// neither negative nor infinite.
+    /// The same material with every number as a description may give it: shares from 0 to 1, an index of refraction
+    /// from 1 up, the others neither negative nor infinite.
     #[must_use]
     pub(super) fn clamped(&self) -> Self {
         let share = |colour: Vec3| colour.max(Vec3::ZERO).min(Vec3::ONE);
         let brightness = |colour: Vec3| colour.max(Vec3::ZERO).min(Vec3::splat(f32::MAX));
-        let positive = |number: f32, otherwise| {
-            if number > 0.0 { number.min(f32::MAX) } else { otherwise }
-        };
+        let at_least = |least: f32, number: f32| number.max(least).min(f32::MAX);
         Self {
             name: self.name.clone(),
             diffuse: brightness(self.diffuse),
             reflection: share(self.reflection),
             transmission: share(self.transmission),
-            refraction_index: positive(self.refraction_index, 1.0),
+            refraction_index: at_least(1.0, self.refraction_index),
             highlight: brightness(self.highlight),
-            shininess: positive(self.shininess, 0.0),
+            shininess: at_least(0.0, self.shininess),
             emission: brightness(self.emission),
         }
     }

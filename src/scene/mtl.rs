@@ -71,15 +71,18 @@ impl<'a> Libraries<'a> {
         self.is_there.insert(path.clone(), bytes.is_some());
         let Some(bytes) = bytes else { return false };
         draft.files.push(path);
-        materials.extend(parse(name, &text_of(&bytes), &mut draft.notes));
+        materials.extend(parse(name, &text_of(&bytes), draft));
         true
     }
 }
 
 /// The materials of a text. Lines that we use but cannot read are noted, all in one note.
-fn parse(name: &str, text: &str, notes: &mut Vec<String>) -> Vec<Material> {
+fn parse(name: &str, text: &str, draft: &mut Draft) -> Vec<Material> {
     let (mut sound, mut unread) = (String::new(), Vec::new());
     for (number, line) in (1..).zip(text.lines()) {
+        if line.trim_start().starts_with("map_") {
+            draft.note("textures are left out: plain colours instead");
+        }
         match sound_line(line) {
             Ok(line) => sound.push_str(&line),
             Err(problem) => unread.push(format!("line {number}: {problem}")),
@@ -91,10 +94,22 @@ fn parse(name: &str, text: &str, notes: &mut Vec<String>) -> Vec<Material> {
             1 => ", and so is 1 other line".to_owned(),
             count => format!(", and so are {count} other lines"),
         };
-        notes.push(format!("material file '{name}', {first}; it is left out{more}"));
+        draft.notes.push(format!("material file '{name}', {first}; it is left out{more}"));
     }
     // Nothing is left in the text that tobj could refuse; if it does, all is plain grey.
     let (materials, _) = tobj::load_mtl_buf(&mut sound.as_bytes()).unwrap_or_default();
+    let some = |is_one: fn(&tobj::Material) -> bool| materials.iter().any(is_one);
+    if some(|mtl| mtl.dissolve_texture.is_some()) {
+        draft.note("what a texture cuts out (map_d) is solid here");
+    }
+    if some(glows_by_texture) {
+        draft.note("what glows by a texture (map_Ke) is dark here");
+    }
+    if some(|mtl| {
+        mtl.illumination_model == Some(GLASS) && opacity(mtl) == 1.0 && filter(mtl).is_some()
+    }) {
+        draft.note("'Tf' is left out beside 'illum 4', as programs differ in what it means: give 'd' for glass");
+    }
     materials.iter().map(material).collect()
 }
 
@@ -114,7 +129,7 @@ fn sound_line(line: &str) -> Result<String, String> {
     Ok(match keyword {
         "newmtl" if rest.trim().is_empty() => return Err("'newmtl' has no name".to_owned()),
         "newmtl" => format!("newmtl {}\n", rest.trim()),
-        "Kd" | "Ks" | "Ke" => match numbers("three numbers")?[..] {
+        "Kd" | "Ks" | "Ke" | "Tf" => match numbers("three numbers")?[..] {
             [red, green, blue, ..] => format!("{keyword} {red} {green} {blue}\n"),
             // One number stands for all three channels.
             [grey] => format!("{keyword} {grey} {grey} {grey}\n"),
@@ -122,14 +137,41 @@ fn sound_line(line: &str) -> Result<String, String> {
         },
         "Ns" | "Ni" | "d" | "Tr" => format!("{keyword} {}\n", numbers("a number")?[0]),
         "illum" => format!("illum {}\n", numbers("a number")?[0] as u8),
+        "map_d" | "map_Ke" => format!("{keyword} {UNREAD}\n"),
         _ => String::new(),
     })
 }
+
+/// The illumination model of glass.
+const GLASS: u8 = 4;
 
 /// Illumination models that reflect: 3 mirror, 4 glass, 5 Fresnel, 6 and 7 refraction, 8 and 9 as 3
 /// and 4 without ray tracing.
 fn reflects(model: u8) -> bool {
     (3..=9).contains(&model)
+}
+
+/// What stands for the name of a texture.
+const UNREAD: &str = "unread";
+
+/// Whether it shines, and a texture says where.
+fn glows_by_texture(mtl: &tobj::Material) -> bool {
+    mtl.unknown_param.contains_key("map_Ke")
+        && mtl.emissive.is_some_and(|emission| emission != [0.0; 3])
+}
+
+fn opacity(mtl: &tobj::Material) -> f32 {
+    let transparency = mtl.unknown_param.get("Tr").and_then(|value| value.parse::<f64>().ok());
+    let opacity = mtl.dissolve.or(transparency.map(|t| 1.0 - t)).unwrap_or(1.0);
+    opacity.clamp(0.0, 1.0) as f32
+}
+
+/// The share of light that passes, by its colour.
+fn filter(mtl: &tobj::Material) -> Option<Vec3> {
+    let mut channels = mtl.unknown_param.get("Tf")?.split_whitespace().map(str::parse);
+    let mut channel = || channels.next()?.ok();
+    let filter = Vec3::new(channel()?, channel()?, channel()?);
+    Some(filter.max(Vec3::ZERO).min(Vec3::ONE))
 }
 
 fn material(mtl: &tobj::Material) -> Material {
@@ -138,21 +180,28 @@ fn material(mtl: &tobj::Material) -> Material {
     let share = |value: Vec3| value.max(Vec3::ZERO).min(Vec3::ONE);
     let model = mtl.illumination_model.unwrap_or(2);
     let specular = share(colour(mtl.specular).unwrap_or(Vec3::ZERO));
-    let transparency = mtl.unknown_param.get("Tr").and_then(|value| value.parse::<f64>().ok());
-    let opacity = mtl.dissolve.or(transparency.map(|t| 1.0 - t)).unwrap_or(1.0);
-    let opacity = opacity.clamp(0.0, 1.0) as f32;
-    let refracts = matches!(model, 6 | 7) && opacity < 1.0;
+    let opacity = opacity(mtl);
+    // A filter is what a refracting surface lets through; without `d` it alone says how much.
+    let filter = filter(mtl).filter(|filter| matches!(model, 6 | 7) && *filter != Vec3::ZERO);
+    let (diffused, passed) = match filter {
+        Some(filter) if opacity == 1.0 => (1.0 - filter, filter),
+        _ => (Vec3::splat(opacity), filter.unwrap_or(Vec3::ONE) * (1.0 - opacity)),
+    };
+    let refracts = matches!(model, 6 | 7) && passed != Vec3::ZERO;
     Material {
         name: mtl.name.clone(),
-        diffuse: opacity * share(colour(mtl.diffuse).unwrap_or(plain.diffuse)),
+        diffuse: diffused * share(colour(mtl.diffuse).unwrap_or(plain.diffuse)),
         reflection: if reflects(model) { specular } else { Vec3::ZERO },
-        transmission: Vec3::splat(1.0 - opacity),
+        transmission: passed,
         refraction_index: match mtl.optical_density {
             Some(index) if refracts && index >= 1.0 => index as f32,
             _ => 1.0,
         },
         highlight: if model == 2 { specular } else { Vec3::ZERO },
         shininess: mtl.shininess.map_or(plain.shininess, |exponent| exponent.max(1.0) as f32),
-        emission: colour(mtl.emissive).unwrap_or(Vec3::ZERO).max(Vec3::ZERO),
+        emission: match glows_by_texture(mtl) {
+            true => Vec3::ZERO,
+            false => colour(mtl.emissive).unwrap_or(Vec3::ZERO).max(Vec3::ZERO),
+        },
     }
 }

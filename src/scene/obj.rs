@@ -4,7 +4,8 @@
 //! without saying where, and cuts every polygon into a fan. MTL files go through tobj (`mtl.rs`).
 //!
 //! Two passes over the text: the first takes the vertices, the second the faces, which may name
-//! vertices that come later. Lines, points, curves, groups and texture coordinates are skipped.
+//! vertices that come later. Lines, points and curves are left out with a note; groups and texture coordinates are
+//! skipped.
 
 use std::{borrow::Cow, collections::HashMap, path::Path};
 
@@ -35,7 +36,7 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
     let text = join_continued(&text);
     let mut materials = Materials::default();
     let mut draft = empty_draft(path);
-    draft.choose_surroundings = true;
+    (draft.choose_ambient, draft.choose_background) = (true, true);
     let vertices = read_vertices(path, &text, &mut materials, &mut draft)?;
     read_faces(path, &text, &vertices, &mut materials, &mut draft)?;
     if !materials.undefined.is_empty() {
@@ -205,6 +206,9 @@ fn read_faces(
                 let material = *material.get_or_insert_with(|| materials.add(Material::default()));
                 positions.clear();
                 positions.extend(corners.iter().map_while(|corner| corner.position));
+                if corners.iter().any(|corner| corner.is_normal_lost) {
+                    draft.note("faces with a normal whose index is out of range are flat");
+                }
                 if positions.len() < corners.len() {
                     draft.dropped.out_of_range += 1;
                 } else if !positions.iter().all(|position| position.is_finite()) {
@@ -221,6 +225,8 @@ fn read_faces(
                     }));
                 }
             }
+            "l" | "p" => draft.note("points and lines are left out"),
+            "curv" | "curv2" | "surf" => draft.note("curves and free-form surfaces are left out"),
             _ => {}
         }
     }
@@ -237,6 +243,8 @@ struct Seen {
 struct Corner {
     position: Option<DVec3>,
     normal: Vec3,
+    /// Whether the index of its normal is out of range.
+    is_normal_lost: bool,
 }
 
 impl Seen {
@@ -246,14 +254,15 @@ impl Seen {
             part.parse::<i64>().map_err(|_| format!("'{word}' is not a corner of a face"))
         });
         let position = parts.next().expect("split gives at least one part")?;
-        let normal = match word.split('/').nth(2) {
+        let index = match word.split('/').nth(2) {
             None | Some("") => None,
             Some(_) => parts.nth(1).transpose()?,
         };
-        let normal = normal.and_then(|index| at(&vertices.normals, index, self.normals));
+        let normal = index.and_then(|index| at(&vertices.normals, index, self.normals));
         Ok(Corner {
             position: at(&vertices.positions, position, self.positions),
             normal: normal.unwrap_or(Vec3::ZERO),
+            is_normal_lost: index.is_some() && normal.is_none(),
         })
     }
 }

@@ -26,12 +26,17 @@ impl Placement {
     /// The triangle in the world. A mirrored one turns its corners round, so that its front stays
     /// in front.
     pub(super) fn place(&self, triangle: &DraftTriangle) -> DraftTriangle {
-        let mut placed = DraftTriangle {
-            corners: triangle.corners.map(|corner| self.affine.transform_point3(corner)),
-            normals: triangle.normals.map(|normal| self.normal(normal)),
-            material: triangle.material,
-        };
-        if self.mirrored {
+        Self::place_each(&[*self; 3], triangle)
+    }
+
+    /// The triangle in the world, each corner by a map of its own.
+    pub(super) fn place_each(each: &[Self; 3], triangle: &DraftTriangle) -> DraftTriangle {
+        let mut placed = *triangle;
+        for (at, placement) in each.iter().enumerate() {
+            placed.corners[at] = placement.affine.transform_point3(triangle.corners[at]);
+            placed.normals[at] = placement.normal(triangle.normals[at]);
+        }
+        if each[0].mirrored {
             placed.corners.swap(1, 2);
             placed.normals.swap(1, 2);
         }

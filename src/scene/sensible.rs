@@ -96,11 +96,18 @@ pub(super) fn add_lights(scene: &mut Scene) {
         };
         added.push(format!("a point light before {chosen}"));
     }
-    if found.share < LEAST_SHARE {
+    if found.beyond_f32 {
+        scene.notes.push(
+            "the emissive surfaces are too large or too small for lights in their place".to_owned(),
+        );
+    }
+    if found.share < LEAST_SHARE || found.beyond_f32 {
         let lamp = Walls::of(scene).lamp_for(&scene.camera, Vec3::splat(SUN));
         let (what, light) = match lamp {
-            Some(lamp) => ("a point light under the ceiling", lamp),
-            None => ("a directional light", sun_beside(&scene.camera)),
+            Some(lamp) if emitters::is_held(scene.bounds().diagonal().powi(2)) => {
+                ("a point light under the ceiling", lamp)
+            }
+            _ => ("a directional light", sun_beside(&scene.camera)),
         };
         added.push(what.to_owned());
         scene.lights.push(light);
@@ -120,20 +127,27 @@ fn sun_beside(camera: &Camera) -> Light {
     Light::Directional { direction: direction.normalize(), irradiance: Vec3::splat(SUN) }
 }
 
-/// A little ambient light, so that shadows are not black, and a sky where a sun shines.
-pub(super) fn choose_surroundings(scene: &mut Scene) {
-    // What a light gives to a surface that faces it half a radius of the scene away.
-    let reach = (0.25 * scene.bounds().diagonal()).powi(2) as f32;
-    let total: Vec3 = scene
-        .lights
-        .iter()
-        .map(|light| match *light {
-            Light::Point { intensity, .. } | Light::Spot { intensity, .. } => intensity / reach,
-            Light::Directional { irradiance, .. } => irradiance,
-        })
-        .sum();
-    scene.ambient = 0.05 * total;
+/// A little ambient light, so that shadows are not black.
+pub(super) fn choose_ambient(scene: &mut Scene) {
+    scene.ambient = 0.05 * total(scene);
+}
+
+/// A sky where a sun shines.
+pub(super) fn choose_background(scene: &mut Scene) {
     let sunny = scene.lights.iter().any(|light| matches!(light, Light::Directional { .. }));
-    scene.background =
-        if sunny { total.element_sum() / 3.0 * Vec3::new(0.10, 0.15, 0.22) } else { Vec3::ZERO };
+    scene.background = if sunny {
+        total(scene).element_sum() / 3.0 * Vec3::new(0.10, 0.15, 0.22)
+    } else {
+        Vec3::ZERO
+    };
+}
+
+/// What all lights give to a surface that faces them half a radius of the scene away.
+fn total(scene: &Scene) -> Vec3 {
+    let reach = (0.25 * scene.bounds().diagonal()).powi(2) as f32;
+    let given = |light: &Light| match *light {
+        Light::Point { intensity, .. } | Light::Spot { intensity, .. } => intensity / reach,
+        Light::Directional { irradiance, .. } => irradiance,
+    };
+    scene.lights.iter().map(given).sum()
 }

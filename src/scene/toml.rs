@@ -111,7 +111,8 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
         Camera::look_at(camera.position.into(), camera.target.into(), up, field_of_view)
     });
     draft.lights = description.light.iter().map(light).collect();
-    draft.choose_surroundings = description.ambient.is_none() && description.background.is_none();
+    draft.choose_ambient = description.ambient.is_none();
+    draft.choose_background = description.background.is_none();
     draft.ambient = description.ambient.unwrap_or_default().into();
     draft.background = description.background.unwrap_or_default().into();
     draft.exposure = description.exposure;
@@ -195,7 +196,7 @@ fn add_mesh(
     }
     memory::check((draft.triangles.len() + mesh.triangles.len()) as u64)?;
     if !mesh.lights.is_empty() || mesh.camera.is_some() {
-        draft.notes.push(format!("{}: its lights and camera are left out", mesh.name));
+        draft.note(format!("{}: its lights and camera are left out", mesh.name));
     }
     let first = draft.materials.len() as u32;
     let [x, y, z] = entry.rotate.map(f64::to_radians);
@@ -211,7 +212,9 @@ fn add_mesh(
     if own.is_none() {
         draft.materials.extend(mesh.materials);
     }
-    draft.notes.extend(mesh.notes);
+    for note in &mesh.notes {
+        draft.note(format!("{}: {note}", mesh.name));
+    }
     draft.files.extend(mesh.files);
     draft.dropped.out_of_range += mesh.dropped.out_of_range;
     draft.dropped.not_finite += mesh.dropped.not_finite;

@@ -52,7 +52,7 @@ fn a_spot_that_is_wider_within_than_without_is_left_out_with_a_note() {
         outer: 0.2,
     };
     let scene = Draft { lights: vec![spot], ..draft() }.finish().unwrap();
-    assert!(notes_say(&scene, "left out 1 lights") && !scene.lights.contains(&spot));
+    assert!(notes_say(&scene, "left out 1 light whose") && !scene.lights.contains(&spot));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{
     Files,
     gltf::{beside, small, triangle_bytes, with},
-    refusal,
+    refusal, scene,
 };
 
 fn refused(change: impl FnOnce(&mut Value)) -> String {
@@ -214,4 +214,24 @@ fn a_cone_that_is_wider_within_than_without_is_refused() {
     });
     let told = "a.glb: light 0 has an innerConeAngle of 0.5, more than its outerConeAngle of 0.25";
     assert!(message.starts_with(told), "{message}");
+}
+
+#[test]
+fn a_file_that_needs_a_newer_reader_is_refused() {
+    for least in ["2.1", "2.9", "3.0"] {
+        let message = refused(|document| document["asset"]["minVersion"] = json!(least));
+        let told = format!("a.glb: the file needs a reader of glTF version '{least}'; umbra reads");
+        assert!(message.starts_with(&told), "{message}");
+    }
+    let sound = with(|document| document["asset"]["minVersion"] = json!("2.0"));
+    assert_eq!(scene("a.glb", sound).triangles.len(), 1);
+}
+
+#[test]
+fn a_file_without_a_scene_is_refused() {
+    let message = refused(|document| {
+        document.as_object_mut().expect("an object").remove("scene");
+        document["scenes"] = json!([]);
+    });
+    assert_eq!(message, "a.glb: the file has no scene; give it one whose nodes are to be seen");
 }

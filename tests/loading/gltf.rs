@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 use umbra::scene::{Light, Scene};
 
-use super::{Files, corners, refusal, scene};
+use super::{Files, corners, notes_say, refusal, scene};
 
 /// A corner at the origin and one along each of X and Y, as six f32... and indices 0 1 2 as u16.
 pub fn triangle_bytes() -> Vec<u8> {
@@ -15,7 +15,7 @@ pub fn triangle_bytes() -> Vec<u8> {
 }
 
 /// A scene of one node with one triangle, for changes by its callers.
-fn document() -> Value {
+pub fn document() -> Value {
     json!({
         "asset": { "version": "2.0" },
         "scene": 0,
@@ -34,7 +34,7 @@ fn document() -> Value {
     })
 }
 
-fn glb(document: &Value, blob: &[u8]) -> Vec<u8> {
+pub fn glb(document: &Value, blob: &[u8]) -> Vec<u8> {
     let mut json = document.to_string().into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');
     let word = |n: usize| (n as u32).to_le_bytes();
@@ -59,7 +59,7 @@ pub fn with(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     glb(&document, &triangle_bytes())
 }
 
-fn loaded(change: impl FnOnce(&mut Value)) -> Scene {
+pub fn loaded(change: impl FnOnce(&mut Value)) -> Scene {
     scene("a.glb", with(change))
 }
 
@@ -190,7 +190,7 @@ fn coordinates_that_are_not_finite_are_dropped_and_counted() {
     blob[0..4].copy_from_slice(&f32::NAN.to_le_bytes());
     let message = refusal("a.glb", glb(&document(), &blob));
     assert!(
-        message.contains("no triangles left of 1 faces: 0 of zero area, 1 not finite"),
+        message.contains("no triangles left of 1 face: 0 of zero area, 1 not finite"),
         "{message}"
     );
 }
@@ -262,44 +262,6 @@ fn lights_and_camera_stand_where_their_nodes_are() {
 }
 
 #[test]
-fn materials_become_whitted_ones() {
-    let material = |json: Value| {
-        let scene = loaded(|document| {
-            document["materials"] = json!([json]);
-            document["meshes"][0]["primitives"][0]["material"] = json!(0);
-        });
-        scene.material(0).clone()
-    };
-    let pbr = |colour: [f32; 4], metallic: f32, roughness: f32| json!({ "baseColorFactor": colour, "metallicFactor": metallic, "roughnessFactor": roughness });
-    let colour = [0.5, 0.25, 1.0, 0.25];
-    let rgb = Vec3::new(0.5, 0.25, 1.0);
-    let rough_metal = material(json!({ "pbrMetallicRoughness": pbr(colour, 1.0, 1.0) }));
-    assert_eq!((rough_metal.diffuse, rough_metal.reflection), (rgb, Vec3::ZERO));
-    assert!(!rough_metal.is_transparent(), "alpha counts only with BLEND");
-    let mirror = material(json!({ "pbrMetallicRoughness": pbr(colour, 1.0, 0.1) }));
-    assert_eq!((mirror.diffuse, mirror.reflection), (Vec3::ZERO, rgb));
-    let lacquer = material(json!({ "pbrMetallicRoughness": pbr(colour, 0.0, 0.0) }));
-    assert_eq!((lacquer.diffuse, lacquer.reflection), (rgb, Vec3::splat(0.04)));
-    let pane =
-        material(json!({ "alphaMode": "BLEND", "pbrMetallicRoughness": pbr(colour, 0.0, 1.0) }));
-    assert_eq!((pane.transmission, pane.refraction_index), (Vec3::splat(0.75), 1.0));
-    assert_eq!(pane.diffuse, 0.25 * rgb);
-    let glass = material(json!({
-        "pbrMetallicRoughness": pbr(colour, 0.0, 0.0),
-        "extensions": {
-            "KHR_materials_transmission": { "transmissionFactor": 0.5 },
-            "KHR_materials_ior": { "ior": 1.5 },
-        },
-    }));
-    assert_eq!((glass.transmission, glass.refraction_index), (0.5 * rgb, 1.5));
-    let lamp = material(json!({
-        "emissiveFactor": [1, 0.5, 0],
-        "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 8 } },
-    }));
-    assert_eq!(lamp.emission, Vec3::new(8.0, 4.0, 0.0));
-}
-
-#[test]
 fn what_was_left_out_is_not_said_to_be_missing() {
     let scene = loaded(|document| {
         document["cameras"] =
@@ -345,39 +307,9 @@ fn surroundings_that_make_no_sense_are_left_out_and_chosen_instead() {
 }
 
 #[test]
-fn numbers_of_materials_that_make_no_sense_are_clamped_with_a_note() {
-    let clamped = |material: Value| {
-        let scene = loaded(|document| {
-            document["materials"] = json!([material]);
-            document["meshes"][0]["primitives"][0]["material"] = json!(0);
-        });
-        let told = "clamped the numbers that make no sense of material 'x'";
-        assert!(scene.notes.iter().any(|note| note == told), "{:?}", scene.notes);
-        scene.material(0).clone()
-    };
-    let dark = clamped(json!({ "name": "x", "emissiveFactor": [-1, 0, 0.5] }));
-    assert_eq!(dark.emission, Vec3::new(0.0, 0.0, 0.5));
-    let bright = clamped(json!({
-        "name": "x",
-        "emissiveFactor": [1, 0, 0],
-        "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 1e39 } },
-    }));
-    assert_eq!(bright.emission, Vec3::new(f32::MAX, 0.0, 0.0));
-    let umbra = json!({
-        "diffuse": [-1, 2, 0], "reflection": [1.5, 0, 0], "transmission": [-0.5, 0, 0],
-        "refraction_index": 0, "shininess": -1, "highlight": [0, 1e39, 0],
-    });
-    let own = clamped(json!({ "name": "x", "extras": { "umbra": umbra } }));
-    assert_eq!((own.diffuse, own.reflection), (Vec3::new(0.0, 2.0, 0.0), Vec3::X));
-    assert!(!own.is_transparent());
-    assert_eq!((own.refraction_index, own.shininess), (1.0, 0.0));
-    assert_eq!(own.highlight, Vec3::new(0.0, f32::MAX, 0.0));
-}
-
-#[test]
 fn corners_beyond_the_last_whole_triangle_are_noted() {
     let scene = loaded(|document| document["accessors"][1]["count"] = json!(4));
-    let told = "a primitive has 4 corners, not three for each triangle: the last is left out";
+    let told = "a primitive has 4 corners, not three for each triangle: the last one is left out";
     assert_eq!(scene.triangles.len(), 1);
     assert!(scene.notes.iter().any(|note| note == told), "{:?}", scene.notes);
 }
@@ -395,5 +327,51 @@ fn a_primitive_without_a_whole_triangle_is_noted() {
         let told = "a primitive has fewer than three corners: it is left out";
         assert_eq!(scene.triangles.len(), 1);
         assert!(scene.notes.iter().any(|note| note == told), "mode {mode}: {:?}", scene.notes);
+    }
+}
+
+#[test]
+fn scenes_without_nodes_and_animations_that_move_no_node_are_read() {
+    let channel = |target: Value| json!({ "sampler": 0, "target": target });
+    let scene = loaded(|document| {
+        document["scenes"] = json!([{ "nodes": [0] }, { "name": "empty" }]);
+        document["animations"] = json!([{
+            "channels": [
+                channel(json!({ "path": "translation" })),
+                channel(json!({ "path": "pointer", "extensions": { "KHR_animation_pointer": {} } })),
+                channel(json!({ "path": "scale", "node": 0 })),
+            ],
+            "samplers": [{ "input": 0, "output": 0 }],
+        }]);
+    });
+    assert_eq!(scene.triangles.len(), 1);
+    assert!(notes_say(&scene, "animations are left out: everything stands where its node does"));
+    let empty = refusal("a.glb", with(|document| document["scenes"] = json!([{}])));
+    assert_eq!(empty, "a.glb: no triangles; give at least one face that has an area");
+    let message = refusal(
+        "a.glb",
+        with(|document| {
+            document["scenes"] = json!([{}]);
+            document["skins"] = json!([{}]);
+        }),
+    );
+    assert_eq!(message, "a.glb: not glTF JSON: missing field `joints`");
+}
+
+#[test]
+fn extensions_that_are_not_read_are_named() {
+    let scene = loaded(|document| {
+        document["extensionsUsed"] = json!([
+            "KHR_lights_punctual",
+            "KHR_materials_sheen",
+            "KHR_texture_transform",
+            "EXT_mesh_gpu_instancing",
+            "X_y",
+        ]);
+    });
+    let told = "glTF extensions that umbra does not read are left out: KHR_materials_sheen, X_y";
+    let instances = "EXT_mesh_gpu_instancing is not read: of all instances of a mesh there is one";
+    for note in [told, instances] {
+        assert!(scene.notes.iter().any(|known| known == note), "{:?}", scene.notes);
     }
 }

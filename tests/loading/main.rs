@@ -2,6 +2,8 @@
 
 mod damaged_gltf;
 mod gltf;
+mod gltf_materials;
+mod gltf_shapes;
 mod mtl;
 mod obj;
 mod sensible;
@@ -64,6 +66,10 @@ fn refusal(name: &str, content: impl AsRef<[u8]>) -> String {
 /// All corners of a draft, for comparing places.
 fn corners(draft: &Draft) -> Vec<DVec3> {
     draft.triangles.iter().flat_map(|triangle| triangle.corners).collect()
+}
+
+fn notes_say(scene: &Scene, words: &str) -> bool {
+    scene.notes.iter().any(|note| note.contains(words))
 }
 
 #[test]

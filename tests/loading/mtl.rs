@@ -1,9 +1,9 @@
 //! Which MTL files an OBJ file reads, and which of their materials its names find.
 
 use glam::Vec3;
-use umbra::scene::Scene;
+use umbra::scene::{Material, Scene};
 
-use super::Files;
+use super::{Files, notes_say};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
@@ -93,4 +93,41 @@ fn numbers_beyond_single_precision_are_left_out_with_their_line() {
     let told = "line 2: 'Ke 1e39 0 0' should be 'Ke' and three numbers within ±3.4e38; it is left \
                 out, and so is 1 other line";
     assert!(scene.notes.iter().any(|note| note.ends_with(told)), "{:?}", scene.notes);
+}
+
+/// The first of these materials, and the scene.
+fn first(mtl: &str) -> (Material, Scene) {
+    let scene = used(mtl, &["mtllib a.mtl\nusemtl a"]);
+    (scene.material(0).clone(), scene)
+}
+
+#[test]
+fn textures_are_left_out_with_a_note() {
+    let textures = "textures are left out: plain colours instead";
+    let cut_out = "what a texture cuts out (map_d) is solid here";
+    let (_, scene) = first("newmtl a\nKd 1 0 0\nmap_Kd wood.png\n");
+    assert!(notes_say(&scene, textures) && !notes_say(&scene, cut_out), "{:?}", scene.notes);
+    let (leaf, scene) = first("newmtl a\nmap_d -clamp on leaf.png\n");
+    assert!(notes_say(&scene, textures) && notes_say(&scene, cut_out), "{:?}", scene.notes);
+    assert!(!leaf.is_transparent());
+    let (screen, scene) = first("newmtl a\nKe 1 1 1\nmap_Ke screen.png\n");
+    assert_eq!(screen.emission, Vec3::ZERO);
+    assert!(notes_say(&scene, "what glows by a texture (map_Ke) is dark here"));
+    let (_, scene) = first("newmtl a\nKd 1 0 0\n");
+    assert!(!notes_say(&scene, "texture"));
+}
+
+#[test]
+fn a_filter_is_what_passes_through_what_refracts() {
+    let (glass, _) = first("newmtl a\nillum 6\nKd 1 1 1\nTf 0.5 1 0.25\nNi 1.5\n");
+    let filter = Vec3::new(0.5, 1.0, 0.25);
+    assert_eq!((glass.transmission, glass.diffuse), (filter, 1.0 - filter));
+    assert_eq!(glass.refraction_index, 1.5);
+    let (half, _) = first("newmtl a\nillum 7\nKd 1 1 1\nTf 0 1 0\nd 0.5\n");
+    assert_eq!((half.transmission, half.diffuse), (0.5 * Vec3::Y, Vec3::splat(0.5)));
+    // Some programs write `illum 4` and `Tf 1 1 1` for whatever is opaque.
+    let (opaque, scene) = first("newmtl a\nillum 4\nTf 1 1 1\n");
+    assert!(!opaque.is_transparent() && notes_say(&scene, "'Tf' is left out beside 'illum 4'"));
+    let (opaque, scene) = first("newmtl a\nillum 2\nTf 1 1 1\n");
+    assert!(!opaque.is_transparent() && !notes_say(&scene, "'Tf'"));
 }

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use umbra::scene::{Light, Scene};
 
-use super::{Files, corners, refusal, scene};
+use super::{Files, corners, notes_say, refusal, scene};
 
 /// Four corners of a square.
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -78,7 +78,7 @@ fn a_file_without_a_sound_triangle_is_refused() {
     // Far from the origin a point has no area either.
     assert_eq!(
         refusal("a.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"),
-        "a.obj: no triangles left of 1 faces: 1 of zero area, 0 not finite, 0 with an index out of range; give at least one face that has an area"
+        "a.obj: no triangles left of 1 face: 1 of zero area, 0 not finite, 0 with an index out of range; give at least one face that has an area"
     );
 }
 
@@ -238,4 +238,27 @@ fn lines_of_an_mtl_that_cannot_be_read_are_noted_once_with_their_line() {
         ]
     );
     assert!(noted("newmtl red\nKd 1 0 0 # red\nd 1\nKs 0.5\nmap_Kd x\n").is_empty());
+}
+
+#[test]
+fn what_is_no_face_is_left_out_with_a_note() {
+    let plain = square("f 1 2 3\n");
+    for (element, told) in [
+        ("l 1 2 3", "points and lines are left out"),
+        ("p 1", "points and lines are left out"),
+        ("surf 0 1 0 1 1 2 3 4", "curves and free-form surfaces are left out"),
+        ("curv 0 1 1 2", "curves and free-form surfaces are left out"),
+    ] {
+        assert!(!notes_say(&plain, told));
+        let scene = square(&format!("f 1 2 3\n{element}\n{element}\n"));
+        let count = scene.notes.iter().filter(|note| *note == told).count();
+        assert_eq!((scene.triangles.len(), count), (1, 1), "{element}: {:?}", scene.notes);
+    }
+}
+
+#[test]
+fn a_face_that_is_flat_for_want_of_a_normal_is_noted() {
+    let told = "faces with a normal whose index is out of range are flat";
+    assert!(notes_say(&square("vn 0 0 1\nf 1//1 2//1 3//2\n"), told));
+    assert!(!notes_say(&square("vn 0 0 1\nf 1//1 2//1 3\n"), told));
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use umbra::scene::{Light, Scene};
 
-use super::{Files, scene};
+use super::{Files, notes_say, scene};
 
 /// A box in OBJ, its faces seen from outside or from within.
 fn cuboid(min: DVec3, max: DVec3, is_seen_from_within: bool) -> String {
@@ -30,10 +30,6 @@ fn room(is_seen_from_within: bool, is_furnished: bool) -> Scene {
         text += &cuboid(DVec3::new(2.4, 0.01, 3.6), DVec3::new(3.7, 2.0, 5.6), false);
     }
     scene("room.obj", text)
-}
-
-fn notes_say(scene: &Scene, words: &str) -> bool {
-    scene.notes.iter().any(|note| note.contains(words))
 }
 
 /// A point in the room, as the file gives it.
@@ -80,5 +76,34 @@ fn the_length_and_the_slant_of_up_move_nobody_out_of_a_room() {
         assert!(is_within(&room, room.camera.position), "{up}: {eye}");
         assert!(eye.x < 1.0 && eye.z < 1.5 && eye.y > 1.5, "{up}: {eye}");
         assert!(matches!(room.lights[..], [Light::Point { .. }]), "{up}");
+    }
+}
+
+/// A room of which the front is open, with a lamp under its ceiling.
+#[test]
+fn a_lamp_that_single_precision_cannot_hold_leaves_nothing_black() {
+    for exponent in [-30, -15, 0, 15, 20, 25] {
+        let size = 10f64.powi(exponent);
+        let corners = |y: f64, half: f64| {
+            [[-half, -half], [half, -half], [half, half], [-half, half]]
+                .map(|[x, z]| format!("v {:e} {:e} {:e}\n", x * size, y * size, z * size))
+        };
+        let files = Files::new();
+        files.write("a.mtl", "newmtl lamp\nKe 17 12 4\n");
+        let text = [corners(0.0, 2.0), corners(3.0, 0.5)].concat().concat();
+        let faces = "mtllib a.mtl\nf 1 2 3 4\nusemtl lamp\nf 5 6 7 8\n";
+        let scene = files.write("a.obj", text + faces).load("a.obj").expect("a sound file");
+        let floor = DVec3::new(0.6 * size, 0.0, 0.6 * size) - scene.origin;
+        let lit: f32 = scene
+            .lights
+            .iter()
+            .filter_map(|light| light.illuminate(floor))
+            .map(|light| light.irradiance.max_element())
+            .sum();
+        assert!(lit > 0.1 && lit < 100.0, "at {size:e}: {lit}, {:?}", scene.notes);
+        assert!(scene.ambient.is_finite() && scene.ambient.max_element() > 1e-3, "{size:e}");
+        let is_held = (-15..=15).contains(&exponent);
+        let told = "the emissive surfaces are too large or too small for lights in their place";
+        assert_eq!(notes_say(&scene, told), !is_held, "{size:e}: {:?}", scene.notes);
     }
 }

@@ -173,6 +173,7 @@ fn numbers_that_make_no_sense_are_refused_with_their_line_and_field() {
         (material("reflection = [0, 1.5, 0]"), "line 4: materials.a.b: reflection = "),
         (material("transmission = [\n 2,\n 0, 0]"), "materials.a.b: transmission = [ 2, 0, 0] "),
         (material("refraction_index = 0"), "line 4: materials.a.b: refraction_index = 0 "),
+        (material("refraction_index = 0.5"), "line 4: materials.a.b: refraction_index = 0.5 "),
         (material("shininess = -1"), "line 4: materials.a.b: shininess = -1 "),
         (format!("{TRIANGLE}scale = [1, nan, 1]"), "line 3: mesh 1: scale = [1, nan, 1] "),
         (light("point", "intensity = [-1, 0, 0]"), "line 6: light 1: intensity = [-1, 0, 0] "),
@@ -255,4 +256,33 @@ fn more_triangles_than_can_be_held_are_refused_before_they_are_made() {
     let message = refusal("a.toml", text);
     let told = format!("a.toml: {} triangles are too many; ", count * meshes as u64);
     assert!(message.starts_with(&told), "{message}");
+}
+
+#[test]
+fn ambient_light_and_background_are_chosen_each_by_itself() {
+    let plain = scene("a.toml", TRIANGLE);
+    assert!(plain.ambient.min_element() > 0.0 && plain.background.min_element() > 0.0);
+    let given = Vec3::new(0.5, 0.25, 0.0);
+    let lit = scene("a.toml", format!("ambient = [0.5, 0.25, 0]\n{TRIANGLE}"));
+    assert_eq!((lit.ambient, lit.background), (given, plain.background));
+    let sky = scene("a.toml", format!("background = [0.5, 0.25, 0]\n{TRIANGLE}"));
+    assert_eq!((sky.ambient, sky.background), (plain.ambient, given));
+}
+
+#[test]
+fn notes_of_meshes_name_the_file_and_come_once() {
+    let files = Files::new();
+    for name in ["a", "b"] {
+        files
+            .write(&format!("{name}.obj"), "mtllib lost.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    }
+    let mesh = |name: &str| format!("[[mesh]]\nfile = \"{name}.obj\"\n");
+    files.write("a.toml", [mesh("a"), mesh("b"), mesh("a")].concat());
+    let scene = files.load("a.toml").expect("a sound file");
+    let told: Vec<_> = scene.notes.iter().filter(|note| note.contains("lost.mtl")).collect();
+    let expected = ["a.obj", "b.obj"].map(|name| {
+        let path = files.path(name);
+        format!("{}: material file 'lost.mtl' cannot be read: plain grey instead", path.display())
+    });
+    assert_eq!(told, expected.iter().collect::<Vec<_>>());
 }

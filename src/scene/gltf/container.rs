@@ -1,18 +1,14 @@
-//! The bytes of a glTF file: JSON, buffers, accessors; every length is checked before it is used.
+//! The bytes of a glTF file: JSON and buffers; every length is checked before it is used.
 
 use std::{
     borrow::Cow,
     path::{Path, PathBuf},
 };
 
-use ::gltf::json::{
-    Root,
-    accessor::{ComponentType, Type as Dimensions},
-    validation::Checked,
-};
-use glam::Vec3;
+use ::gltf::json::{Asset, Root};
+use serde_json::{Value, json};
 
-use super::{Problem, item};
+use super::Problem;
 use crate::scene::load::read_plain;
 
 const HEADER: usize = 12;
@@ -28,7 +24,7 @@ const DATA: &str = "data:";
 pub(super) struct Container<'a> {
     pub(super) root: Root,
     pub(super) json: &'a [u8],
-    buffers: Vec<Cow<'a, [u8]>>,
+    pub(super) buffers: Vec<Cow<'a, [u8]>>,
     /// The files that hold buffers.
     pub(super) files: Vec<PathBuf>,
 }
@@ -38,13 +34,8 @@ impl<'a> Container<'a> {
         let must_be_binary = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb"));
         let (json, blob) =
             if must_be_binary || bytes.starts_with(MAGIC) { split(bytes)? } else { (bytes, None) };
-        let root = Root::from_slice(json).map_err(|e| format!("not glTF JSON: {e}"))?;
-        let version = &root.asset.version;
-        if version.split('.').next() != Some("2") {
-            return Err(format!(
-                "the file is of glTF version '{version}'; umbra reads version 2: convert it"
-            ));
-        }
+        let root = read_json(json)?;
+        check_version(&root.asset)?;
         let buffers = root
             .buffers
             .iter()
@@ -69,87 +60,57 @@ impl<'a> Container<'a> {
             uris.filter(|uri| !uri.starts_with(DATA)).map(|uri| beside(path, uri)).collect();
         Ok(Self { root, json, buffers, files })
     }
+}
 
-    /// The elements of an accessor, if it is of the wanted type and lies within its buffer.
-    pub(super) fn elements(
-        &self,
-        root: &Root,
-        index: usize,
-        (dimensions, kinds): (Dimensions, &[ComponentType]),
-        what: &str,
-    ) -> Result<Elements<'_>, Problem> {
-        let accessor = item(&root.accessors, index, "accessor")?;
-        let wrong = |problem: &str| Err(format!("accessor {index} ({what}) {problem}"));
-        if accessor.sparse.is_some() {
-            return wrong("is sparse, which umbra does not read");
+/// Reads the JSON.
+///
+/// The gltf crate demands two fields that glTF does not: the nodes of a scene, and the node that an animation moves.
+/// Where they are missing, there are none, and channels that move none are left out, as all animations are.
+fn read_json(json: &[u8]) -> Result<Root, Problem> {
+    let error = match Root::from_slice(json) {
+        Ok(root) => return Ok(root),
+        Err(error) => error,
+    };
+    let mut document: Value =
+        serde_json::from_slice(json).map_err(|error| format!("not glTF JSON: {error}"))?;
+    for scene in elements_of(&mut document, "scenes") {
+        if let Some(scene) = scene.as_object_mut() {
+            scene.entry("nodes").or_insert(json!([]));
         }
-        let kind = match (accessor.component_type, accessor.type_) {
-            (Checked::Valid(kind), Checked::Valid(is)) if is == dimensions => kind.0,
-            _ => return wrong("is of the wrong type"),
+    }
+    for animation in elements_of(&mut document, "animations") {
+        if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            channels.retain(|channel| channel.pointer("/target/node").is_some());
+        }
+    }
+    Root::from_slice(document.to_string().as_bytes()).map_err(|other| {
+        // The mended text has other lines, and so other places.
+        let placeless = |error: &serde_json::Error| {
+            let told = error.to_string();
+            told.rsplit_once(" at line ").map_or(told.clone(), |(problem, _)| problem.to_owned())
         };
-        if !kinds.contains(&kind) {
-            return wrong("is of the wrong type");
-        }
-        let Some(view) = accessor.buffer_view else { return wrong("has no buffer view") };
-        let view = item(&root.buffer_views, view.value(), "buffer view")?;
-        item(&root.buffers, view.buffer.value(), "buffer")?;
-        let buffer = &self.buffers[view.buffer.value()];
-
-        let size = kind.size() * dimensions.multiplicity();
-        let stride = view.byte_stride.as_ref().map_or(size, |stride| stride.0);
-        if stride < size {
-            return wrong(&format!(
-                "has a byteStride of {stride}, less than its elements of {size} bytes; export the file again"
-            ));
-        }
-        let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let bytes = slice(buffer, start, view.byte_length.0).and_then(|view| {
-            view.get(usize::try_from(accessor.byte_offset.map_or(0, |o| o.0)).ok()?..)
-        });
-        let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
-        let needed = match count {
-            0 => Some(0),
-            _ => (count - 1).checked_mul(stride).and_then(|last| last.checked_add(size)),
-        };
-        match (bytes, needed) {
-            (Some(bytes), Some(needed)) if needed <= bytes.len() => {
-                Ok(Elements { bytes, stride, size: kind.size(), count })
-            }
-            _ => wrong("reaches beyond the end of its buffer: the file is damaged or cut short"),
-        }
-    }
+        let (was, is) = (placeless(&error), placeless(&other));
+        format!("not glTF JSON: {}", if was == is { error.to_string() } else { is })
+    })
 }
 
-fn slice(bytes: &[u8], start: u64, length: u64) -> Option<&[u8]> {
-    let start = usize::try_from(start).ok()?;
-    bytes.get(start..start.checked_add(usize::try_from(length).ok()?)?)
+fn elements_of<'a>(document: &'a mut Value, list: &str) -> impl Iterator<Item = &'a mut Value> {
+    document.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten()
 }
 
-/// Elements of one accessor: checked, so reading one cannot fail.
-pub(super) struct Elements<'a> {
-    bytes: &'a [u8],
-    stride: usize,
-    /// Bytes of one component.
-    size: usize,
-    pub(super) count: usize,
-}
-
-impl Elements<'_> {
-    fn component(&self, element: usize, component: usize) -> [u8; 4] {
-        let at = element * self.stride + component * self.size;
-        let mut bytes = [0; 4];
-        bytes[..self.size].copy_from_slice(&self.bytes[at..at + self.size]);
-        bytes
+/// Refuses a file that was written, or must be read, by another version than 2.0.
+fn check_version(asset: &Asset) -> Result<(), Problem> {
+    let version = &asset.version;
+    if version.split('.').next() != Some("2") {
+        return Err(format!(
+            "the file is of glTF version '{version}'; umbra reads version 2: convert it"
+        ));
     }
-
-    /// A vector of three f32.
-    pub(super) fn vector(&self, element: usize) -> Vec3 {
-        Vec3::from_array([0, 1, 2].map(|axis| f32::from_le_bytes(self.component(element, axis))))
-    }
-
-    /// An unsigned integer of one, two or four bytes.
-    pub(super) fn index(&self, element: usize) -> usize {
-        u32::from_le_bytes(self.component(element, 0)) as usize
+    match &asset.min_version {
+        Some(least) if least != "2.0" => Err(format!(
+            "the file needs a reader of glTF version '{least}'; umbra reads 2.0: export it for that"
+        )),
+        _ => Ok(()),
     }
 }
 

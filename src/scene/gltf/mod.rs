@@ -1,26 +1,28 @@
 //! glTF files: `.glb`, and `.gltf` with buffers inside or beside it.
 //!
 //! Of the gltf crate only its description of the JSON is used: its accessors and its validation panic
-//! on damaged files, and it reads node transforms in single precision. Images, animations and skins
-//! are not read.
+//! on damaged files, and it reads node transforms in single precision. Images and animations are not read.
 
 mod container;
+mod elements;
+mod left_out;
 mod material;
 mod nodes;
+mod vertices;
 
 use std::path::Path;
 
 use ::gltf::json::{
-    Index, Root,
+    Index, Node, Root,
     accessor::{ComponentType, Type as Dimensions},
     camera, extensions,
-    mesh::{Mesh, Mode, Primitive, Semantic},
+    mesh::{Mode, Primitive},
     validation::Checked,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::{
-    Camera, Draft, DraftTriangle, Light, SceneError,
+    Camera, Draft, Light, SceneError,
     load::{empty_draft, malformed, read_file},
     material::{Surroundings, from_extras},
     memory,
@@ -29,13 +31,14 @@ use super::{
 use container::Container;
 pub(super) use container::MAGIC;
 use nodes::NodeTransforms;
+use vertices::{Pose, Vertices};
 
 /// Reads a GLB or glTF file.
 pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
     let bytes = read_file(path)?;
     let mut draft = empty_draft(path);
     draft.up = Some(DVec3::Y);
-    draft.choose_surroundings = true;
+    (draft.choose_ambient, draft.choose_background) = (true, true);
     Container::open(path, &bytes)
         .and_then(|container| Reader { container, draft }.read())
         .map_err(|problem| malformed(path, problem))
@@ -59,7 +62,7 @@ impl Reader<'_> {
     fn read(mut self) -> Result<Draft, Problem> {
         let root = std::mem::take(&mut self.container.root);
         self.draft.files.append(&mut self.container.files);
-        check_extensions(&root)?;
+        left_out::check_extensions(&root)?;
         self.draft.materials = root.materials.iter().map(material::material).collect();
         // What has no material is plain grey.
         self.draft.materials.push(Default::default());
@@ -68,7 +71,11 @@ impl Reader<'_> {
         let scene = match (root.scene, &root.scenes[..]) {
             (Some(scene), scenes) => item(scenes, scene.value(), "scene")?,
             (None, [first, ..]) => first,
-            (None, []) => return Err("the file has no scene".to_owned()),
+            (None, []) => {
+                return Err(
+                    "the file has no scene; give it one whose nodes are to be seen".to_owned()
+                );
+            }
         };
         self.read_extras(scene);
         let count = counts.below(&scene.nodes);
@@ -79,9 +86,7 @@ impl Reader<'_> {
         while let Some((index, parent)) = waiting.pop() {
             let node = item(&root.nodes, index, "node")?;
             let world = parent * transforms.local(index);
-            if let Some(mesh) = node.mesh {
-                self.read_mesh(&root, item(&root.meshes, mesh.value(), "mesh")?, world)?;
-            }
+            self.read_mesh(&root, node, &transforms, world)?;
             if let Some(index) = node.camera {
                 self.read_camera(&root, index.value(), world)?;
             }
@@ -92,7 +97,9 @@ impl Reader<'_> {
             }
             waiting.extend(node.children.iter().flatten().rev().map(|n| (n.value(), world)));
         }
-        self.note_what_is_left_out(&root);
+        for note in left_out::notes(&root) {
+            self.draft.note(note);
+        }
         Ok(self.draft)
     }
 
@@ -102,37 +109,75 @@ impl Reader<'_> {
         self.draft.ambient = surroundings.ambient.into();
         self.draft.background = surroundings.background.into();
         self.draft.exposure = surroundings.exposure;
-        self.draft.choose_surroundings = false;
+        (self.draft.choose_ambient, self.draft.choose_background) = (false, false);
     }
 
-    fn read_mesh(&mut self, root: &Root, mesh: &Mesh, world: DAffine3) -> Result<(), Problem> {
-        let placement = Placement::new(world);
+    fn read_mesh(
+        &mut self,
+        root: &Root,
+        node: &Node,
+        transforms: &NodeTransforms,
+        world: DAffine3,
+    ) -> Result<(), Problem> {
+        let Some(mesh) = node.mesh else { return Ok(()) };
+        let mesh = item(&root.meshes, mesh.value(), "mesh")?;
+        let weights = node.weights.as_ref().or(mesh.weights.as_ref());
+        let pose = Pose {
+            placement: Placement::new(world),
+            weights: weights.map_or(&[], |weights| &weights[..]),
+            joints: self.joints(root, node, transforms)?,
+        };
         for primitive in &mesh.primitives {
             if nodes::triangle_count(root, primitive)? > 0 {
-                self.read_primitive(root, primitive, &placement)?;
+                self.read_primitive(root, primitive, &pose)?;
             } else if has_triangles(mode(primitive)?) {
-                self.note("a primitive has fewer than three corners: it is left out");
+                self.draft.note("a primitive has fewer than three corners: it is left out");
             }
         }
         Ok(())
+    }
+
+    /// Where the joints of a node's skin, if it has one, take what hangs on them. They stand in the world: where the
+    /// node stands does not matter.
+    fn joints(
+        &self,
+        root: &Root,
+        node: &Node,
+        transforms: &NodeTransforms,
+    ) -> Result<Option<Vec<DAffine3>>, Problem> {
+        let Some(skin) = node.skin else { return Ok(None) };
+        let skin = item(&root.skins, skin.value(), "skin")?;
+        let inverses = skin.inverse_bind_matrices.map(|index| {
+            let wanted = (Dimensions::Mat4, &[ComponentType::F32][..]);
+            self.container.elements(root, index.value(), wanted, "inverse bind matrices")
+        });
+        let inverses = inverses.transpose()?;
+        let joint = |(place, joint): (usize, &Index<Node>)| {
+            item(&root.nodes, joint.value(), "node")?;
+            let unbound = match &inverses {
+                None => DAffine3::IDENTITY,
+                Some(inverses) if place < inverses.count => inverses.affine(place),
+                Some(inverses) => {
+                    return Err(format!(
+                        "a skin has {} joints, but {} inverse bind matrices; export the file again",
+                        skin.joints.len(),
+                        inverses.count
+                    ));
+                }
+            };
+            Ok(transforms.world(root, joint.value()) * unbound)
+        };
+        skin.joints.iter().enumerate().map(joint).collect::<Result<_, Problem>>().map(Some)
     }
 
     fn read_primitive(
         &mut self,
         root: &Root,
         primitive: &Primitive,
-        placement: &Placement,
+        pose: &Pose,
     ) -> Result<(), Problem> {
-        let vectors = |semantic: Semantic, what: &str| {
-            let Some(index) = primitive.attributes.get(&Checked::Valid(semantic)) else {
-                return Ok(None);
-            };
-            let wanted = (Dimensions::Vec3, &[ComponentType::F32][..]);
-            self.container.elements(root, index.value(), wanted, what).map(Some)
-        };
-        let positions =
-            vectors(Semantic::Positions, "positions")?.ok_or("a primitive has no positions")?;
-        let normals = vectors(Semantic::Normals, "normals")?;
+        let vertices = Vertices::of(&self.container, root, primitive, pose)?;
+        let is_unbound = pose.joints.is_some() && !vertices.are_bound();
         let integers = [ComponentType::U8, ComponentType::U16, ComponentType::U32];
         let indices = primitive
             .indices
@@ -148,28 +193,26 @@ impl Reader<'_> {
             }
             None => root.materials.len(),
         };
-        let count = indices.as_ref().map_or(positions.count, |indices| indices.count);
+        let count = indices.as_ref().map_or(vertices.count, |indices| indices.count);
         let vertex = |i| indices.as_ref().map_or(i, |indices| indices.index(i));
         for corners in corners_of(mode(primitive)?, count) {
             let corners = corners.map(vertex);
-            if corners.iter().any(|&corner| corner >= positions.count) {
+            if corners.iter().any(|&corner| corner >= vertices.count) {
                 self.draft.dropped.out_of_range += 1;
-                continue;
+            } else {
+                self.draft.triangles.push(vertices.triangle(corners, material as u32));
             }
-            let normal = |corner| match &normals {
-                Some(normals) if corner < normals.count => normals.vector(corner),
-                _ => Vec3::ZERO,
-            };
-            self.draft.triangles.push(placement.place(&DraftTriangle {
-                corners: corners.map(|corner| positions.vector(corner).as_dvec3()),
-                normals: corners.map(normal),
-                material: material as u32,
-            }));
+        }
+        if is_unbound {
+            self.draft.note("a primitive of a skinned mesh has no joints and weights: it stands where its node does");
         }
         if mode(primitive)? == Mode::Triangles && !count.is_multiple_of(3) {
-            let last = if count % 3 == 1 { "the last is" } else { "the last 2 are" };
-            self.note(&format!(
-                "a primitive has {count} corners, not three for each triangle: {last} left out"
+            self.draft.note(format!(
+                "a primitive has {count} corners, not three for each triangle: the last {} left out",
+                match count % 3 {
+                    1 => "one is".to_owned(),
+                    more => format!("{more} are"),
+                }
             ));
         }
         Ok(())
@@ -198,7 +241,7 @@ impl Reader<'_> {
                 ));
             }
             (Checked::Valid(Type::Orthographic), _) => {
-                self.note("an orthographic camera is left out");
+                self.draft.note("an orthographic camera is left out");
             }
             (Checked::Invalid, _) => {
                 return Err(format!(
@@ -243,47 +286,9 @@ impl Reader<'_> {
             (Checked::Invalid, _) => return Err(format!("light {index} is of an unknown type")),
         });
         if lamp.range.is_some() {
-            self.note("the range of lights is left out: they reach everywhere");
+            self.draft.note("the range of lights is left out: they reach everywhere");
         }
         Ok(())
-    }
-
-    fn note(&mut self, text: &str) {
-        if !self.draft.notes.iter().any(|note| note == text) {
-            self.draft.notes.push(text.to_owned());
-        }
-    }
-
-    fn note_what_is_left_out(&mut self, root: &Root) {
-        if !root.textures.is_empty() {
-            self.note("textures are left out: plain colours instead");
-        }
-        if !root.animations.is_empty() || !root.skins.is_empty() {
-            self.note("animations and skins are left out: meshes stand as they are stored");
-        }
-        let masked = root.materials.iter().filter(|material| material::is_masked(material)).count();
-        if masked > 0 {
-            self.note(&format!("{masked} materials with a cut-out mask are solid here"));
-        }
-        let shapeless = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-        if shapeless.filter_map(|p| mode(p).ok()).any(|mode| !has_triangles(mode)) {
-            self.note("points and lines are left out");
-        }
-    }
-}
-
-/// Refuses what changes the shape of things in a way we do not know.
-fn check_extensions(root: &Root) -> Result<(), Problem> {
-    let harmless = |name: &str| {
-        ["KHR_lights_", "KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_"]
-            .iter()
-            .any(|prefix| name.starts_with(prefix))
-    };
-    match root.extensions_required.iter().find(|name| !harmless(name)) {
-        Some(name) => Err(format!(
-            "the file needs the glTF extension {name}, which umbra does not read; export it without"
-        )),
-        None => Ok(()),
     }
 }
 

@@ -44,6 +44,21 @@ impl NodeTransforms {
         Ok(transforms)
     }
 
+    /// From the node to the world, along its parents: a skin names joints wherever they stand. No node is below itself,
+    /// as [`count_triangles`] has made sure.
+    pub(super) fn world(&self, root: &Root, node: usize) -> DAffine3 {
+        let holds = |parent: &Node, node: usize| {
+            parent.children.iter().flatten().any(|child| child.value() == node)
+        };
+        let mut world = self.local(node);
+        let mut node = node;
+        while let Some(parent) = root.nodes.iter().position(|parent| holds(parent, node)) {
+            world = self.local(parent) * world;
+            node = parent;
+        }
+        world
+    }
+
     /// From the node to its parent.
     pub(super) fn local(&self, node: usize) -> DAffine3 {
         let transform = &self.nodes[node];

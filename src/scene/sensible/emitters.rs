@@ -22,6 +22,8 @@ pub(super) struct Emitters {
     pub(super) surfaces: usize,
     /// Their share of the area of all surfaces.
     pub(super) share: f64,
+    /// Whether they shine more or less than f32 holds, so that there are no lights in their place.
+    pub(super) beyond_f32: bool,
 }
 
 /// One connected emissive surface.
@@ -34,7 +36,7 @@ struct Surface {
     /// Sum over triangles of area times centroid.
     weighted: DVec3,
     /// Sum over triangles of area times emission.
-    power: Vec3,
+    power: DVec3,
 }
 
 /// A point light for each connected emissive surface, of the intensity with which a flat one of the
@@ -43,15 +45,28 @@ pub(super) fn lights(scene: &Scene) -> Emitters {
     let mut surfaces = surfaces(scene);
     surfaces.sort_by(|a, b| b.power.element_sum().total_cmp(&a.power.element_sum()));
     if surfaces.is_empty() {
-        return Emitters { lights: Vec::new(), surfaces: 0, share: 0.0 };
+        return Emitters { lights: Vec::new(), surfaces: 0, share: 0.0, beyond_f32: false };
     }
     let everything = everything(scene);
     let middle = everything.centre();
+    let brightest = surfaces.iter().take(MOST);
+    // A scene may be so large or so small that its areas and squares of distances are not held.
+    let beyond_f32 = brightest.clone().any(|surface| !is_held(surface.power.max_element()))
+        || !is_held(scene.bounds().diagonal().powi(2));
     Emitters {
-        lights: surfaces.iter().take(MOST).map(|surface| surface.light(middle)).collect(),
+        lights: match beyond_f32 {
+            true => Vec::new(),
+            false => brightest.map(|surface| surface.light(middle)).collect(),
+        },
         surfaces: surfaces.len(),
         share: surfaces.iter().map(|surface| surface.area).sum::<f64>() / everything.area,
+        beyond_f32,
     }
+}
+
+/// Whether f32 holds the number and its reciprocal with all their digits.
+pub(super) fn is_held(number: f64) -> bool {
+    (number as f32).is_normal() && (number.recip() as f32).is_normal()
 }
 
 impl Surface {
@@ -61,7 +76,7 @@ impl Surface {
         self.area += area;
         self.normal += normal;
         self.weighted += area * (corners[0] + corners[1] + corners[2]) / 3.0;
-        self.power += area as f32 * emission;
+        self.power += area * emission.as_dvec3();
         self.corners.extend(corners);
     }
 
@@ -83,7 +98,7 @@ impl Surface {
         let size = relative().map(DVec3::length).fold(0.0, f64::max);
         let front = relative().map(|corner| corner.dot(ahead)).fold(0.0, f64::max);
         let position = centre + (front + CLEARANCE * size) * ahead;
-        Light::Point { position, intensity: self.power }
+        Light::Point { position, intensity: self.power.as_vec3() }
     }
 }
 

@@ -116,8 +116,8 @@ fn check_material(table: &Table, material: &Material) -> Result<(), String> {
     table.demand("emission", is_brightness(material.emission.into()), BRIGHTNESS)?;
     table.demand("reflection", is_share(material.reflection.into()), SHARE)?;
     table.demand("transmission", is_share(material.transmission.into()), SHARE)?;
-    let is_positive = |number: f32| number > 0.0 && number.is_finite();
-    table.demand("refraction_index", is_positive(material.refraction_index), "give 1 or more")?;
+    let is_index = (1.0..=f32::MAX).contains(&material.refraction_index);
+    table.demand("refraction_index", is_index, "give 1 or more")?;
     let is_exponent = material.shininess >= 0.0 && material.shininess.is_finite();
     table.demand("shininess", is_exponent, "give a number from 0 up")
 }
