@@ -110,6 +110,13 @@ fn regret_is_a_root_of_the_batches_where_nothing_is_built() {
 }
 
 #[test]
+fn a_trial_that_is_very_dear_does_not_keep_the_cheapest_from_its_own() {
+    let world = World::flat(|_, _, _, c| [500.0, 1e6, 5.0][c], 3);
+    let (_, answered) = world.run(100);
+    assert!(answered[0][2] > 80, "{answered:?}");
+}
+
+#[test]
 fn regret_is_a_factor_of_two_where_the_scene_is_prepared_whatever_the_length() {
     for price in [1e3, 1e5, 1e7, 1e9] {
         let mut world = World::flat(|_, _, _, c| [500.0, 30.0][c], 2);
@@ -171,11 +178,25 @@ fn a_word_that_is_too_large_or_too_small_costs_no_more_than_its_error() {
             for batches in [100, 1_000, 10_000] {
                 world.expected = error * batches as f64 * BATCH;
                 let (total, _) = world.run(batches);
-                let worse = if error > 1.0 { error } else { 1.0 };
-                let bound = world.hindsight(batches) * (2.5 + WORTH * worse);
+                let worse = if error > 1.0 { WORTH * error } else { WORTH + SHORT_BY };
+                let bound = world.hindsight(batches) * (2.5 + worse);
                 assert!(total <= bound, "{error} {price} {batches}: {total} of {bound}");
             }
         }
+    }
+}
+
+#[test]
+fn a_forecast_that_is_short_by_little_has_nothing_bought_at_the_end() {
+    const BATCHES: usize = 100;
+    for share in [0.8, 0.9, 0.95, 1.0] {
+        let mut world = World::flat(|_, _, _, c| [500.0, 30.0][c], 2);
+        let all = 500.0 * BATCH * BATCHES as f64;
+        world.scene = vec![0.0, 0.7 * all];
+        world.expected = share * BATCH * BATCHES as f64;
+        let (total, _) = world.run(BATCHES);
+        let bound = 1.62 * world.hindsight(BATCHES) + world.first_batches();
+        assert!(total <= bound, "{share}: {total} of {bound}");
     }
 }
 
