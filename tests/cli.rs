@@ -194,8 +194,10 @@ fn outputs_that_cannot_be() {
 fn rays_that_are_no_rays() {
     let row = [0u8; 48];
     let whole = |shape: &str, data: &[u8]| npy("'<f8'", "False", shape, data);
-    let cases: [(&str, Vec<u8>, &[&str]); 15] = [
-        ("empty.npy", vec![], &["no .npy file"]),
+    let cases: [(&str, Vec<u8>, &[&str]); 18] = [
+        ("empty.npy", vec![], &["no .npy file", "numpy.save"]),
+        ("rays.npz", b"PK\x03\x04".into(), &["archives such as .npz are not read", "numpy.save"]),
+        ("archive", b"PK\x03\x04".into(), &["archives", "as .npy"]),
         ("five.csv", format!("{ROW}{ROW}1,2,3,4,5\n").into(), &["line 3", "'1,2,3,4,5'"]),
         ("seven.csv", format!("{ROW}1,2,3,4,5,6,7\n{ROW}").into(), &["line 2", "six numbers"]),
         ("word.csv", format!("\n#\n{ROW}1,2,three,4,5,6").into(), &["line 4", "three"]),
@@ -208,9 +210,10 @@ fn rays_that_are_no_rays() {
             &["line 500001", "oops"],
         ),
         ("magic.npy", ROW.into(), &["no .npy file"]),
-        ("short.npy", whole("(3, 6)", &row.repeat(2)), &["cut short: 2 rows of 3"]),
+        ("short.npy", whole("(3, 6)", &row.repeat(2)), &["cut short: 2 rows of 3", "numpy.save"]),
         ("shorter.npy", whole("(3, 6)", &row.repeat(3)[..143]), &["cut short: 2 rows of 3"]),
-        ("long.npy", whole("(3, 6)", &row.repeat(4)), &["more after its 3 rows"]),
+        ("long.npy", whole("(3, 6)", &row.repeat(4)), &["more after its 3 rows", "numpy.save"]),
+        ("longer.npy", whole("(1, 6)", &row.repeat(2)), &["more after its 1 row;"]),
         ("three.npy", whole("(2, 3)", &row), &["its shape is (2, 3)", "(N, 6)"]),
         ("order.npy", npy("'<f8'", "True", "(1, 6)", &row), &["Fortran", "ascontiguousarray"]),
         ("whole.npy", npy("'<i8'", "False", "(1, 6)", &row), &["'<i8'", "astype"]),
@@ -232,6 +235,10 @@ fn rays_that_are_no_rays() {
     refused(folder.path(), line, &["cannot read missing.csv"]);
     let line = "query triangle.obj --rays rays.csv -o out.npy";
     refused(folder.path(), line, &["out.npy", "the rays are .csv"]);
+    // What the rays are is said first: of an archive, that answers cannot be .npy would be beside the point.
+    fs::write(folder.path().join("rays.npz"), b"PK").unwrap();
+    let line = "query triangle.obj --rays rays.npz -o out.npy";
+    refused(folder.path(), line, &["rays.npz", "archives such as .npz are not read"]);
     fs::write(folder.path().join("rays.npy"), whole("(1, 6)", &row)).unwrap();
     let line = "query triangle.obj --rays rays.npy -o out.csv";
     refused(folder.path(), line, &["out.csv", "the rays are .npy"]);

@@ -94,6 +94,34 @@ fn options_that_may_change_something_are_taken() {
 }
 
 #[test]
+fn parts_of_a_message_about_arguments_do_not_run_together() {
+    let folder = folder();
+    for (line, told) in [
+        ("frobnicate", "unrecognized subcommand 'frobnicate'; usage: umbra <COMMAND> (try --help)"),
+        (
+            "render triangle.obj",
+            "were not provided: --output <FILE>; usage: umbra render --output <FILE> <SCENE> (try",
+        ),
+        ("render triangle.obj -o a.png --backend embre", "brute]; tip: a similar value exists"),
+    ] {
+        refused(folder.path(), line, &[told]);
+    }
+}
+
+#[test]
+fn the_help_has_an_example_of_every_command() {
+    let help = String::from_utf8(run(folder().path(), "--help").stdout).unwrap();
+    let (commands, examples) = help.split_once("Examples:").unwrap();
+    let (_, commands) = commands.split_once("Commands:\n").unwrap();
+    let names = commands.lines().map_while(|line| line.strip_prefix("  ")?.split(' ').next());
+    let names: Vec<&str> = names.filter(|name| *name != "help").collect();
+    assert!(names.len() >= 8, "{names:?}");
+    for name in names {
+        assert!(examples.contains(&format!("  umbra {name} ")), "{name}");
+    }
+}
+
+#[test]
 fn a_number_that_is_too_large_is_not_called_too_small() {
     let line = "certify --queries 99999999999999999999";
     refused(folder().path(), line, &["--queries", "too large", "a smaller"]);

@@ -226,6 +226,75 @@ fn one_thing_is_no_plural() {
     assert!(said(&output).contains("mesh.obj: 1 triangle, 1 light, grid"), "{}", said(&output));
     let output = run(folder.path(), "query mesh.obj --rays rays.csv -o out.csv");
     assert!(said(&output).contains("; 1 row, 1 blocked"), "{}", said(&output));
+    write(folder.path(), "one.toml", ONE_QUERY);
+    let backends = "one.toml --size 1x1 --backends grid";
+    for (line, told) in [
+        (
+            "compare",
+            "one.toml: 1 triangle, 1 light, 1x1; 1 shadow query: 0 blocked, 1 clear, 0 ties",
+        ),
+        ("tradeoff --quick", "one.toml: 1 triangle, 1 light; 1x1, 1 shadow ray, 0.0 % blocked"),
+    ] {
+        let output = run(folder.path(), &format!("{line} {backends}"));
+        succeeded(&output);
+        let table = String::from_utf8(output.stdout).unwrap();
+        assert!(table.contains(told), "{table}");
+    }
+}
+
+/// A camera of one pixel above a triangle, under a light.
+const ONE_QUERY: &str = "
+[camera]
+position = [1, 1, 5]
+target = [1, 1, 0]
+[[mesh]]
+triangles = [[[0, 0, 0], [4, 0, 0], [0, 4, 0]]]
+[[light]]
+kind = \"point\"
+position = [0, 0, 3]
+intensity = [1, 1, 1]
+";
+
+#[test]
+fn numbers_have_separators_on_the_terminal_and_none_in_files() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "rays.csv", &"1,1,1,1,1,-1\n".repeat(1234));
+    for (line, told) in [
+        ("scene jittered-sparse -o sparse.glb", "551,408 triangles, "),
+        ("render sparse.glb -o a.png --size 64x48", "551,408 triangles, "),
+        ("query sparse.glb --rays rays.csv -o out.csv", "; 1,234 rows, "),
+    ] {
+        let output = run(folder.path(), &format!("{line} --stats stats.json"));
+        succeeded(&output);
+        assert!(said(&output).contains(told), "{}", said(&output));
+        let stats = fs::read_to_string(folder.path().join("stats.json")).unwrap();
+        assert!(stats.contains("\"triangles\": 551408,"), "{stats}");
+    }
+}
+
+#[test]
+fn every_file_of_statistics_says_which_umbra_wrote_it() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "one.toml", ONE_QUERY);
+    write(folder.path(), "rays.csv", "1,1,1,1,1,-1\n");
+    for line in [
+        "render one.toml -o a.png --size 8x6",
+        "compare one.toml --size 8x6 --backends grid --threads 3",
+        "query one.toml --rays rays.csv -o out.csv",
+        "tradeoff one.toml --size 8x6 --quick --backends grid --tests exact",
+        "paper --quick --size 8x6 --scene drum --backends grid",
+        "paper --quick --size 8x6 --scene drum --backends grid --variants",
+        "certify --queries 9 --classes sliver",
+        "extremes --queries 9 --cases grazing --backends grid",
+        "scene drum -o drum.obj --tessellation 0.01",
+    ] {
+        succeeded(&run(folder.path(), &format!("{line} --stats stats.json")));
+        let text = fs::read_to_string(folder.path().join("stats.json")).unwrap();
+        let stats: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(stats["version"], env!("CARGO_PKG_VERSION"), "umbra {line}");
+        assert!(!line.starts_with("compare") || stats["threads"] == 3);
+        assert_eq!(text.matches("\n  \"version\"").count(), 1, "umbra {line}");
+    }
 }
 
 #[test]

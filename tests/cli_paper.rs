@@ -39,8 +39,8 @@ fn the_table_stands_beside_the_papers() {
 #[test]
 fn every_variant_makes_the_same_picture() {
     let (text, json) = paper("--backends grid --variants");
-    assert_eq!(json[0]["agree"], true);
-    for variant in json[0]["variants"].as_array().unwrap() {
+    assert_eq!(json["scenes"][0]["agree"], true);
+    for variant in json["scenes"][0]["variants"].as_array().unwrap() {
         assert!(text.contains(variant["name"].as_str().unwrap()), "{variant} is not in:\n{text}");
     }
 }

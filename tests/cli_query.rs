@@ -167,6 +167,22 @@ fn no_rays_have_no_answers_and_are_no_error() {
     assert!(answers_of_npy(&fs::read(folder.join("none.out")).unwrap(), 0).is_empty());
 }
 
+#[test]
+fn nothing_is_said_of_a_camera_or_light_that_rays_do_not_need() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let dropped = "f 1 1 2\n";
+    fs::write(folder.join("triangle.obj"), format!("{TRIANGLE}{dropped}")).unwrap();
+    fs::write(folder.join("rays.csv"), "1,1,1,1,1,-1\n").unwrap();
+    let output = run(folder, "query triangle.obj --rays rays.csv -o out.csv --stats stats.json");
+    succeeded(&output);
+    assert_eq!(said(&output).lines().count(), 2, "what was dropped, and what was answered");
+    assert!(said(&output).contains("dropped 1 face"), "{}", said(&output));
+    let stats = fs::read_to_string(folder.join("stats.json")).unwrap();
+    let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
+    assert_eq!(stats["notes"].as_array().unwrap().len(), 1, "{}", stats["notes"]);
+}
+
 /// Both ends are finite f32 numbers, and yet there is no ray between them.
 #[test]
 fn a_segment_longer_than_f32_is_said_to_be_so() {

@@ -75,8 +75,9 @@ fn claims() -> Vec<Claim> {
         Claim::Exact,
         Claim::Test(Test::Pluecker, arithmetic),
         Claim::Test(Test::Moller, arithmetic),
-        Claim::Single { robust: true, arithmetic, clipped: false },
-        Claim::Single { robust: false, arithmetic, clipped: true },
+        Claim::Single { robust: true, arithmetic, clipped: false, verdicts: false },
+        Claim::Single { robust: true, arithmetic, clipped: false, verdicts: true },
+        Claim::Single { robust: false, arithmetic, clipped: true, verdicts: false },
         Claim::Rounded { robust: true },
         Claim::Rounded { robust: false },
     ]
@@ -240,14 +241,16 @@ fn a_wrong_answer_of_another_test_is_not_explained() {
 }
 
 #[test]
-fn a_right_answer_that_embree_cannot_give_is_found() {
+fn a_right_answer_that_embree_cannot_give_is_found_unless_verdicts_may_have_given_it() {
     let mesh = sphere(Vec3::ZERO, 1.0, 12);
     let scene = scene_of(&mesh);
     let recording = recording_of(&hard_rays(&mesh, 300, 58));
     let truth = answers(&recording, &scene, Backend::Brute, Test::Exact);
     let arithmetic = Arithmetic::of_this_cpu();
-    let claim = Claim::Single { robust: false, arithmetic, clipped: false };
-    let report = report_on(&scene, &recording, claim, &truth);
+    let claim = |verdicts| Claim::Single { robust: false, arithmetic, clipped: false, verdicts };
+    let behind_verdicts = report_on(&scene, &recording, claim(true), &truth);
+    assert!(behind_verdicts.failure().is_none() && behind_verdicts.disagreements.is_empty());
+    let report = report_on(&scene, &recording, claim(false), &truth);
     let row = &report.contenders[0];
     assert_eq!((row.false_blocked, row.false_clear), (0, 0));
     assert!(row.unexplained > 0 && report.failure().is_some());
@@ -404,7 +407,13 @@ fn the_list_has_every_disagreement_with_the_bits_of_its_ray() {
         assert_eq!((&bits[..], &decimals[..]), (&expected[..], &expected[..]));
     }
     let lines = report.listing(3);
-    assert!(lines.contains("more queries") && lines.contains("grid moller"), "{lines}");
+    assert!(lines.contains("more disputed queries;") && lines.contains("grid moller"), "{lines}");
+    let unlisted = report.listing(0);
+    let disputed: std::collections::BTreeSet<usize> =
+        report.disagreements.iter().map(|found| found.query).collect();
+    let told = format!("{} disputed queries, not listed; ", disputed.len());
+    assert!(disputed.len() < 1000 && unlisted.starts_with(&told), "{unlisted}");
+    assert_eq!(report.listing(1000).lines().count(), report.listing(999).lines().count());
 }
 
 fn compare_refused(arguments: &str, told: &[&str]) {

@@ -122,6 +122,7 @@ fn all_four_files_are_well_formed_and_agree() {
         .collect();
     let samples = report["samples"].as_array().unwrap();
     assert_eq!(rows.len(), engines.len() + samples.len(), "no tessellation of a file");
+    assert!(table.contains("picture error: root") && !table.contains("surface error"), "{table}");
     for (row, point) in rows.iter().zip(engines) {
         assert_eq!((row["trade"], row["name"]), ("engines", point["name"].as_str().unwrap()));
         let agree = |column: &str, value: &Value| {

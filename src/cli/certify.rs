@@ -15,7 +15,7 @@ use super::outputs::{print_beside_files, write_json};
 use super::progress::with_rate;
 use crate::exact::adversary::Class;
 use crate::exact::campaign::{Summary, campaign};
-use crate::measure::grouped;
+use crate::measure::{count, grouped};
 
 /// Queries of a class between two looks at the clock: a second's work at most.
 const BLOCK: u64 = 100_000;
@@ -74,9 +74,13 @@ impl Certify {
         let pool = pool_for(self.stats.as_deref(), self.threads)?;
         let start = Instant::now();
         let done = AtomicU64::new(0);
+        let whole = self.queries.saturating_mul(self.classes().count() as u64);
         let rows = with_rate(
-            Some(self.queries.saturating_mul(self.classes().count() as u64)),
-            || (done.load(Relaxed), done.load(Relaxed)),
+            Some(whole),
+            || {
+                let queries = done.load(Relaxed);
+                (self.how_far(whole, queries, start.elapsed()), queries)
+            },
             || pool.install(|| self.certify(start, &done)),
         );
         let all = rows.iter().fold(Summary::default(), |all, row| all + row.summary);
@@ -88,7 +92,8 @@ impl Certify {
         match all.wrong {
             0 => Ok(()),
             wrong => {
-                Err(Failure::Comparison(format!("{wrong} of {} answers are wrong", all.queries)))
+                let answers = count(all.queries, "answer");
+                Err(Failure::Comparison(format!("wrong: {} of {answers}", grouped(wrong))))
             }
         }
     }
@@ -98,6 +103,12 @@ impl Certify {
             self.classes.is_empty() || self.classes.iter().any(|name| name == class.name())
         };
         Class::ALL.iter().copied().filter(wanted)
+    }
+
+    /// How much of the whole is done, by the queries or by the time, whichever will end it.
+    fn how_far(&self, whole: u64, queries: u64, elapsed: Duration) -> u64 {
+        let share = self.seconds.map_or(0.0, |seconds| elapsed.as_secs_f64() / seconds as f64);
+        queries.max((share * whole as f64) as u64).min(whole)
     }
 
     /// Takes the classes in turns, so that all get as far where the time is limited.
@@ -165,4 +176,33 @@ fn line(name: &str, columns: [String; 9]) -> String {
         line += &format!("{column:>14}");
     }
     line + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Arguments {
+        #[command(flatten)]
+        certify: Certify,
+    }
+
+    fn certify(line: &str) -> Certify {
+        Arguments::parse_from(line.split(' ')).certify
+    }
+
+    #[test]
+    fn where_time_ends_it_progress_is_that_of_the_time() {
+        let limited = certify("certify --queries 1000000 --seconds 4");
+        let far =
+            |queries, seconds| limited.how_far(1_000_000, queries, Duration::from_secs(seconds));
+        assert_eq!(far(10, 1), 250_000);
+        assert_eq!(far(10, 5), 1_000_000, "the last queries may take longer");
+        assert_eq!(far(900_000, 1), 900_000, "the queries end it");
+        let forever = certify("certify --queries 1000000");
+        assert_eq!(forever.how_far(1_000_000, 10, Duration::from_secs(100)), 10);
+    }
 }

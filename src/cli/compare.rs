@@ -76,6 +76,7 @@ struct Statistics<'a> {
     notes: &'a [String],
     samples_per_pixel: u32,
     depth: u8,
+    threads: usize,
     left_out: &'a [String],
     #[serde(flatten)]
     report: &'a Report,
@@ -137,6 +138,7 @@ impl Compare {
                 notes: &scene.notes,
                 samples_per_pixel: self.samples * self.samples,
                 depth: self.depth,
+                threads: pool.current_num_threads(),
                 left_out: &left_out,
                 report: &report,
             };

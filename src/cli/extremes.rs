@@ -11,9 +11,9 @@ use super::numbers::whole;
 use super::options::{MOST_THREADS, pool_for};
 use super::outputs::{print_beside_files, write_json};
 use super::progress::with_word;
-use crate::measure::contender;
 use crate::measure::extremes::cases::{Case, cases};
 use crate::measure::extremes::{Conditions, Report, examine, head};
+use crate::measure::{contender, count};
 use crate::occlusion::{Backend, BackendError, Test};
 
 const DETAILS: &str = "\
@@ -82,7 +82,10 @@ impl Extremes {
         }
         match reports.iter().filter(|report| report.is_defect()).count() {
             0 => Ok(()),
-            defects => Err(Failure::Comparison(format!("umbra is wrong in {defects} cases"))),
+            defects => {
+                let cases = count(defects as u64, "case");
+                Err(Failure::Comparison(format!("umbra is wrong in {cases}")))
+            }
         }
     }
 

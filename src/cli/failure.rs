@@ -69,13 +69,17 @@ impl Failure {
 }
 
 impl From<clap::Error> for Failure {
-    /// What was wrong with the arguments, in one line.
+    /// What was wrong with the arguments, in one line: its paragraphs with semicolons between.
     fn from(error: clap::Error) -> Self {
         let text = error.to_string();
-        let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-        let wanted = lines.filter(|line| !line.starts_with("For more information"));
-        let line = wanted.collect::<Vec<_>>().join(" ");
-        Self::Input(format!("{} (try --help)", line.strip_prefix("error: ").unwrap_or(&line)))
+        let text = text.strip_prefix("error: ").unwrap_or(&text);
+        let one_line = |paragraph: &str| {
+            let line = paragraph.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+            line.strip_prefix("Usage: ").map(|usage| format!("usage: {usage}")).unwrap_or(line)
+        };
+        let paragraphs = text.split("\n\n").map(|paragraph| one_line(paragraph.trim()));
+        let wanted = paragraphs.filter(|line| !line.starts_with("For more information"));
+        Self::Input(format!("{} (try --help)", wanted.collect::<Vec<_>>().join("; ")))
     }
 }
 

@@ -32,8 +32,11 @@ Exit status: 0 done; 1 a comparison failed; 2 bad input, and nothing was written
 Examples:
   umbra render chair-room -o room.png
   umbra compare chair-room
+  umbra compare sponza.glb --tests exact,pluecker
   umbra query chair-room --rays rays.csv -o blocked.csv
   umbra tradeoff chair-room --html tradeoff.html
+  umbra tradeoff sponza.glb --quick
+  umbra extremes --cases grazing,slivers
   umbra paper --quick
   umbra certify --seconds 60
   umbra scene drum -o drum.glb";

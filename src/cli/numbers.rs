@@ -5,12 +5,6 @@ use std::num::{IntErrorKind, ParseIntError};
 use std::ops::{Bound, RangeBounds};
 use std::str::FromStr;
 
-/// So many things, of which one is called `one`.
-pub(super) fn count(number: u64, one: &str) -> String {
-    let ending = if number == 1 { "" } else { "s" };
-    format!("{number} {one}{ending}")
-}
-
 /// A parser of whole numbers in a range.
 pub(super) fn whole<T: FromStr<Err = ParseIntError> + PartialOrd + Display>(
     range: impl RangeBounds<T> + Clone,

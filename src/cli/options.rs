@@ -5,6 +5,7 @@ use std::str::FromStr;
 use std::time::Instant;
 
 use clap::Args;
+use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use super::failure::{Failure, say};
@@ -16,7 +17,7 @@ use super::outputs::{check_apart, check_outputs};
 use super::progress::with_word;
 use crate::measure::contender;
 use crate::occlusion::{Backend, BackendError, BuildOptions, GridOptions, Occlusion, Test, build};
-use crate::scene::Scene;
+use crate::scene::{Camera, Draft, Light, Scene};
 use crate::shadow::Combination;
 
 /// Reflections and refractions at most: as many as the table of a ray's path holds.
@@ -290,7 +291,26 @@ pub(super) fn pool_for(
 /// Loads a scene, and says what the program decided for the user. No output may replace a file of the scene; which
 /// they are is known only now.
 pub(super) fn load_scene(scene: &Path, outputs: &[&Path]) -> Result<Scene, Failure> {
-    let scene = with_word(&format!("loading {}", scene.display()), || crate::scene::load(scene))?;
+    finish_draft(scene, outputs, |draft| draft)
+}
+
+/// The same for whoever brings rays: no camera or light is looked for that nobody needs, nor is anything said of them.
+pub(super) fn load_triangles(scene: &Path, outputs: &[&Path]) -> Result<Scene, Failure> {
+    finish_draft(scene, outputs, |draft| {
+        let camera = Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, 1.0);
+        let light = Light::Directional { direction: DVec3::Y, irradiance: Vec3::ONE };
+        Draft { camera: Some(camera), lights: vec![light], ..draft }
+    })
+}
+
+fn finish_draft(
+    scene: &Path,
+    outputs: &[&Path],
+    prepare: impl FnOnce(Draft) -> Draft + Send,
+) -> Result<Scene, Failure> {
+    let scene = with_word(&format!("loading {}", scene.display()), || {
+        prepare(crate::scene::draft(scene)?).finish()
+    })?;
     check_apart(outputs, &scene.files)?;
     for note in &scene.notes {
         say!("umbra: {}: {note}", scene.name);

@@ -4,11 +4,21 @@ use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 use super::failure::Failure;
 use crate::whole_file::{WholeFile, finish_all, folder_of, place_of};
 
 /// What messages call standard output.
 pub(super) const STANDARD_OUTPUT: &str = "standard output";
+
+/// Statistics, and by which umbra.
+#[derive(Serialize)]
+struct Versioned<'a, T> {
+    version: &'static str,
+    #[serde(flatten)]
+    value: &'a T,
+}
 
 /// The files of a command in the making: all of them appear, or none.
 #[derive(Default)]
@@ -27,8 +37,9 @@ impl Outputs {
     }
 
     /// Writes statistics as JSON, not in their place yet.
-    pub fn add_json(&mut self, path: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
-        let mut text = serde_json::to_string_pretty(value).expect("statistics are plain data");
+    pub fn add_json(&mut self, path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+        let versioned = Versioned { version: env!("CARGO_PKG_VERSION"), value };
+        let mut text = serde_json::to_string_pretty(&versioned).expect("statistics are plain data");
         text.push('\n');
         self.add(path, text.as_bytes())
     }
@@ -40,7 +51,7 @@ impl Outputs {
 }
 
 /// Writes statistics as JSON, where they are all that is written.
-pub(super) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
+pub(super) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
     outputs.add_json(path, value)?;
     outputs.finish()

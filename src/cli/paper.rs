@@ -119,6 +119,11 @@ struct Report<'a> {
     storage: &'a [Storage],
 }
 
+#[derive(Serialize)]
+struct Variants<'a> {
+    scenes: &'a [VariantReport],
+}
+
 impl Paper {
     fn conditions(&self) -> Conditions {
         let backends = match &self.backends[..] {
@@ -213,7 +218,7 @@ impl Paper {
             reports.extend(of_scene);
         }
         if let Some(path) = &self.stats {
-            write_json(path, &reports)?;
+            write_json(path, &Variants { scenes: &reports })?;
         }
         agreed(reports.iter().map(|report| (report.agree, report.backend)))
     }

@@ -64,6 +64,9 @@ fn watch<T: Send>(
                 return;
             }
             let bar = new_bar(whole);
+            // What was done before there was a bar took longer than none: it is no measure of the time left.
+            bar.set_position(status().0);
+            bar.reset_eta();
             while !ended(BEAT) {
                 let (done, message) = status();
                 bar.set_position(done);

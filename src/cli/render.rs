@@ -7,11 +7,12 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::numbers::{count, positive, whole};
+use super::numbers::{positive, whole};
 use super::options::{Built, EngineOptions, MOST_DEPTH, load_scene, parse_size};
 use super::outputs::{Outputs, check_outputs};
 use super::progress::with_bar;
 use super::shadows::ShadowOptions;
+use crate::measure::{count, grouped};
 use crate::render::{
     Film, MOST_SAMPLES, Order, Picture, Progress, Rendered, Settings, Shown, Statistics,
     encode_picture, forecast, render,
@@ -83,7 +84,6 @@ fn default_size(scene: &Path) -> (u32, u32) {
 
 #[derive(Serialize)]
 struct Report<'a> {
-    version: &'a str,
     scene: &'a str,
     triangles: usize,
     opaque_triangles: u32,
@@ -238,7 +238,6 @@ impl Render {
             report,
         };
         Report {
-            version: env!("CARGO_PKG_VERSION"),
             scene: &scene.name,
             triangles: scene.triangles.len(),
             opaque_triangles: scene.triangles.opaque_count(),
@@ -289,8 +288,8 @@ impl Report<'_> {
             self.test,
             self.shadows,
             count(rays.total(), "ray"),
-            rays.shadow,
-            self.counts.shadows.blocked,
+            grouped(rays.shadow),
+            grouped(self.counts.shadows.blocked),
             self.render_seconds,
             rays.total() as f64 / self.render_seconds / 1e6,
             self.load_seconds,

@@ -6,9 +6,10 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::numbers::{count, finite};
+use super::numbers::finite;
 use super::outputs::{Outputs, check_outputs};
 use super::progress::with_word;
+use crate::measure::count;
 use crate::scene::{self, builtin};
 
 const DETAILS: &str = "\

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::recording::TooManyQueries;
+use super::recording::{NoQueries, TooManyQueries};
 use crate::occlusion::BackendError;
 use crate::render::SettingsError;
 use crate::scene::SceneError;
@@ -27,10 +27,8 @@ pub enum MeasureError {
     #[error(transparent)]
     Queries(#[from] TooManyQueries),
     /// Nothing to answer.
-    #[error(
-        "{0}: no shadow query is asked in this picture; give the scene another camera or light"
-    )]
-    NoQueries(String),
+    #[error(transparent)]
+    NoQueries(#[from] NoQueries),
     /// Nothing would be measured.
     #[error("repetitions 0: give at least 1")]
     Repetitions,

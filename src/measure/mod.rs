@@ -13,5 +13,5 @@ mod truth;
 pub mod wilson;
 
 pub use error::MeasureError;
-pub(crate) use numbers::grouped;
 use numbers::{bits, told};
+pub(crate) use numbers::{count, grouped};

@@ -15,6 +15,16 @@ pub(crate) fn grouped(number: u64) -> String {
     grouped
 }
 
+/// So many things, of which one is called `one`.
+pub(crate) fn count(number: u64, one: &str) -> String {
+    let things = match one.strip_suffix("query") {
+        _ if number == 1 => one.to_owned(),
+        Some(before) => format!("{before}queries"),
+        None => format!("{one}s"),
+    };
+    format!("{} {things}", grouped(number))
+}
+
 /// A share per million: rare ones in hundredths, many as whole numbers.
 pub(crate) fn told(share: f64) -> String {
     match share {
@@ -43,6 +53,13 @@ mod tests {
     fn digits_are_grouped_by_three() {
         let numbers = [0, 7, 999, 1000, 123_456, 1_234_567];
         assert_eq!(numbers.map(grouped), ["0", "7", "999", "1,000", "123,456", "1,234,567"]);
+    }
+
+    #[test]
+    fn one_thing_is_no_plural() {
+        assert_eq!([0, 1, 2].map(|n| count(n, "ray")), ["0 rays", "1 ray", "2 rays"]);
+        assert_eq!(count(1234, "shadow query"), "1,234 shadow queries");
+        assert_eq!(count(1, "shadow query"), "1 shadow query");
     }
 
     #[test]

@@ -41,6 +41,16 @@ pub struct TooManyQueries {
     needed: f64,
 }
 
+/// No light faces anything that the camera sees: nothing to answer.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{scene}: no shadow query is asked in this picture; give the scene another camera or light"
+)]
+pub struct NoQueries {
+    /// The scene.
+    pub scene: String,
+}
+
 impl Recording {
     /// Whether the queries of such a picture may be expected to fit into memory: those of primary hits into a
     /// quarter of it.
@@ -95,6 +105,14 @@ impl Recording {
             }
         }
         Self { width, height, queries, runs, blocks }
+    }
+
+    /// Whether there is anything to answer; `scene` is what the scene is called.
+    ///
+    /// # Errors
+    /// If there is not.
+    pub fn check_asked(&self, scene: &str) -> Result<(), NoQueries> {
+        if self.queries.is_empty() { Err(NoQueries { scene: scene.to_owned() }) } else { Ok(()) }
     }
 
     /// The queries.

@@ -7,6 +7,9 @@ use super::label::{LINE_HEIGHT, text_width, write_text};
 
 const INK: Vec3 = Vec3::splat(0.8);
 
+/// Of the frame round each colour, which may be as dark as what is round it.
+const FRAME: Vec3 = Vec3::splat(0.2);
+
 /// The colour of pixels about which nothing was asked.
 pub const UNASKED: Vec3 = Vec3::new(0.02, 0.03, 0.1);
 
@@ -43,12 +46,33 @@ pub fn with_legend(
         film.set(place, colour(place));
     }
     for ((colour, text), (x, y)) in entries.iter().zip(places) {
-        let right = width.min(x + LINE_HEIGHT - 2);
-        for place in (y + 2..y + LINE_HEIGHT - 1).flat_map(|y| (x + 1..right).map(move |x| (x, y)))
-        {
-            film.set(place, *colour);
+        let (left, right, top, bottom) =
+            (x + 1, width.min(x + LINE_HEIGHT - 2), y + 2, y + LINE_HEIGHT - 1);
+        for place in (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y))) {
+            let is_within = (left + 1..right - 1).contains(&place.0)
+                && (top + 1..bottom - 1).contains(&place.1);
+            film.set(place, if is_within { *colour } else { FRAME });
         }
         write_text(&mut film, (x + LINE_HEIGHT, y), text, INK);
     }
     film
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_colour_as_dark_as_what_is_round_it_has_a_frame() {
+        let film = with_legend((40, 1), &[(Vec3::ZERO, "0".to_owned())], |_| Vec3::ZERO);
+        let at = |x: u32, y: u32| film.pixels()[(y * 40 + x) as usize];
+        let (right, bottom) = (LINE_HEIGHT - 3, LINE_HEIGHT - 1);
+        for corner in [at(1, 3), at(right, 3), at(1, bottom), at(right, bottom)] {
+            assert_eq!(corner, FRAME);
+        }
+        assert_eq!(
+            [at(0, 3), at(2, 4), at(right - 1, bottom - 1), at(right + 1, 3)],
+            [Vec3::ZERO; 4]
+        );
+    }
 }

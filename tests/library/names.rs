@@ -3,11 +3,12 @@
 use std::fmt::{Debug, Display};
 use std::str::FromStr;
 
+use clap::ValueEnum;
 use serde::Serialize;
 use umbra::exact::Verdict;
 use umbra::occlusion::{Backend, Test};
 use umbra::render::Order;
-use umbra::shadow::{Combination, Outcome};
+use umbra::shadow::{Combination, Method, Outcome};
 
 fn read_back<T>(all: &[T])
 where
@@ -31,6 +32,21 @@ fn names_read_back_and_others_are_refused_with_those_there_are() {
         refused,
         "there is no engine 'octree'; give one of grid, embree, bvh2, cwbvh, brute"
     );
+}
+
+/// Options take the names that messages and statistics print, in their order.
+fn taken_as_printed<T: Display + ValueEnum>(all: &[T]) {
+    let taken = T::value_variants().iter().map(|one| one.to_possible_value().unwrap());
+    let taken: Vec<String> = taken.map(|value| value.get_name().to_owned()).collect();
+    assert_eq!(taken, all.iter().map(T::to_string).collect::<Vec<_>>());
+}
+
+#[test]
+fn the_command_line_takes_the_names_that_are_printed() {
+    taken_as_printed(&Backend::ALL);
+    taken_as_printed(&Test::ALL);
+    taken_as_printed(&Order::ALL);
+    taken_as_printed(&Method::ALL);
 }
 
 #[test]

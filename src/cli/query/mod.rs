@@ -15,11 +15,11 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::numbers::count;
-use super::options::{Built, EngineOptions, load_scene};
+use super::options::{Built, EngineOptions, load_triangles};
 use super::outputs::{Outputs, STANDARD_OUTPUT, check_outputs, unprinted};
 use super::progress::with_rate;
 use crate::geometry::Ray;
+use crate::measure::{count, grouped};
 use crate::occlusion::{Occlusion, Tally};
 use crate::whole_file::WholeFile;
 use csv::BadLine;
@@ -80,7 +80,6 @@ struct Counts {
 
 #[derive(Serialize)]
 struct Report<'a> {
-    version: &'a str,
     scene: &'a str,
     triangles: usize,
     opaque_triangles: u32,
@@ -123,7 +122,7 @@ impl Query {
 
     fn answer(&self, mut rows: Rows, outputs: &[&Path]) -> Result<(), Failure> {
         let start = Instant::now();
-        let scene = load_scene(&self.scene, outputs)?;
+        let scene = load_triangles(&self.scene, outputs)?;
         let load_seconds = start.elapsed().as_secs_f64();
         let Built { backend, seconds: build_seconds, .. } = self.engine.build(&scene)?;
         let start = Instant::now();
@@ -144,7 +143,7 @@ impl Query {
             self.engine.backend,
             self.engine.test(),
             count(counts.rows, "row"),
-            counts.blocked,
+            grouped(counts.blocked),
             rows_per_second / 1e6,
         );
         if counts.invalid > 0 {
@@ -156,7 +155,6 @@ impl Query {
         }
         let Some(stats) = &self.stats else { return files.finish() };
         let report = Report {
-            version: env!("CARGO_PKG_VERSION"),
             scene: &scene.name,
             triangles: scene.triangles.len(),
             opaque_triangles: scene.triangles.opaque_count(),

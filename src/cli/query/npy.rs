@@ -4,7 +4,7 @@
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// What to do about a damaged file.
-const SAVE_AGAIN: &str = "save it again with numpy.save";
+pub(super) const SAVE_AGAIN: &str = "save it again with numpy.save";
 
 /// Numbers in a row.
 const COLUMNS: usize = 6;
@@ -56,12 +56,7 @@ impl Layout {
         let double = match kind.get(..5) {
             Some("'<f4'") => false,
             Some("'<f8'") => true,
-            _ => {
-                let kind = kind.split(", '").next().unwrap_or(kind);
-                return Err(format!(
-                    "its numbers are {kind}; save rays.astype('<f8') or '<f4' instead"
-                ));
-            }
+            _ => return Err(other_numbers(kind)),
         };
         if !value("fortran_order")?.starts_with("False") {
             return Err(
@@ -103,6 +98,16 @@ impl Layout {
             rows.extend(whole.map(|bytes| row(bytes, |number| f32::from_le_bytes(number).into())));
         }
     }
+}
+
+/// What is said of numbers that are not ours; the header goes on after them.
+fn other_numbers(header: &str) -> String {
+    if header.starts_with('[') {
+        let flat = "numpy.lib.recfunctions.structured_to_unstructured(rays)";
+        return format!("its rows are of named fields, not of six numbers; save {flat} instead");
+    }
+    let kind = header.split(',').next().unwrap_or(header);
+    format!("its numbers are {kind}; save rays.astype('<f8') or '<f4' instead")
 }
 
 /// The header of an array of `rows` bytes.
@@ -149,7 +154,13 @@ mod tests {
         for (kind, order, shape, told) in [
             ("'<i4'", "False", "(7, 6)", "its numbers are '<i4'; save rays.astype"),
             ("'>f8'", "False", "(7, 6)", "its numbers are '>f8'"),
-            ("[('x', '<f8')]", "False", "(7, 6)", "its numbers are [('x'"),
+            ("'|O'", "False", "(7, 6)", "its numbers are '|O'; save"),
+            (
+                "[('x', '<f8'), ('y', '<f4', (2,))]",
+                "False",
+                "(7,)",
+                "its rows are of named fields, not of six numbers; save numpy.lib.recfunctions",
+            ),
             ("'<f8'", "True", "(7, 6)", "numpy.ascontiguousarray"),
             ("'<f8'", "False", "(7, 3)", "its shape is (7, 3); give (N, 6)"),
             ("'<f8'", "False", "(6,)", "its shape is (6,)"),

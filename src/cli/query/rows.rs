@@ -8,12 +8,16 @@ use std::path::Path;
 use super::csv::{self, BadLine};
 use super::npy::{self, Layout};
 use crate::cli::failure::Failure;
+use crate::measure::count;
 
 /// Bytes that are read at once.
 const BLOCK_BYTES: usize = 4 << 20;
 
 /// Bytes that one thread decodes and answers at once: about a thousand rows.
 const PART_BYTES: usize = 48 << 10;
+
+/// What every .zip file begins with, and so every .npz.
+const ZIP_MAGIC: &[u8] = b"PK";
 
 /// How rows are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,13 +109,19 @@ impl<'a> Rows<'a> {
             remaining: 0,
         };
         rows.fill()?;
-        let named_npy = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy"));
+        let is_named = |kind| path.extension().is_some_and(|end| end.eq_ignore_ascii_case(kind));
         if rows.buffer.starts_with(npy::MAGIC) {
             let (layout, length) =
                 Layout::read(&rows.buffer).map_err(|problem| rows.bad(&problem))?;
             (rows.format, rows.used, rows.remaining) = (Format::Npy(layout), length, layout.rows);
-        } else if named_npy {
-            return Err(rows.bad("this is no .npy file: it does not begin with '\\x93NUMPY'"));
+        } else if is_named("npz") || rows.buffer.starts_with(ZIP_MAGIC) {
+            let array = "save the array of rays alone, with numpy.save, as .npy";
+            return Err(rows.bad(&format!("archives such as .npz are not read; {array}")));
+        } else if is_named("npy") {
+            return Err(rows.bad(&format!(
+                "this is no .npy file: it does not begin with '\\x93NUMPY'; {}",
+                npy::SAVE_AGAIN
+            )));
         } else {
             (rows.used, rows.header_lines) = csv::header(&rows.buffer);
         }
@@ -138,13 +148,16 @@ impl<'a> Rows<'a> {
         let rows = self.remaining.min((held / row_bytes) as u64);
         if rows == 0 && self.remaining > 0 {
             return Err(self.bad(&format!(
-                "it is cut short: {} rows of {}",
+                "it is cut short: {} rows of {}; {}",
                 layout.rows - self.remaining,
-                layout.rows
+                layout.rows,
+                npy::SAVE_AGAIN
             )));
         }
         if rows == 0 && held > 0 {
-            return Err(self.bad(&format!("there is more after its {} rows", layout.rows)));
+            let whole = count(layout.rows, "row");
+            let again = npy::SAVE_AGAIN;
+            return Err(self.bad(&format!("there is more after its {whole}; {again}")));
         }
         self.remaining -= rows;
         Ok(rows as usize * row_bytes)

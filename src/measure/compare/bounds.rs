@@ -21,7 +21,7 @@ pub enum Claim {
     /// They are those of this test in this arithmetic, asked of every triangle.
     Test(Test, Arithmetic),
     /// They lie between the bounds of `rtcOccluded1` that [`embree_bounds`](crate::occlusion::embree_bounds)
-    /// computes bit for bit.
+    /// computes bit for bit. Where verdicts stand before it, they may be the truth instead.
     Single {
         /// In scenes of Embree's robust mode.
         robust: bool,
@@ -29,6 +29,8 @@ pub enum Claim {
         arithmetic: Arithmetic,
         /// Its boxes are clipped, so that only rounding bounds it from below: default scenes of high quality.
         clipped: bool,
+        /// What verdicts settle is the truth, which need not lie between the bounds.
+        verdicts: bool,
     },
     /// They are what rounding can make of Embree's polynomials: packets.
     Rounded {
@@ -56,12 +58,14 @@ impl Claim {
         }
         let options = contender.options.embree;
         let clipped = !robust && options.quality == crate::occlusion::Quality::High;
-        Self::Single { robust, arithmetic: options.arithmetic(), clipped }
+        let verdicts = !contender.method.verdicts.is_empty();
+        Self::Single { robust, arithmetic: options.arithmetic(), clipped, verdicts }
     }
 
     #[cfg(not(feature = "embree"))]
-    fn of_embree(_: &Contender, robust: bool) -> Self {
-        Self::Single { robust, arithmetic: Arithmetic::of_this_cpu(), clipped: false }
+    fn of_embree(contender: &Contender, robust: bool) -> Self {
+        let verdicts = !contender.method.verdicts.is_empty();
+        Self::Single { robust, arithmetic: Arithmetic::of_this_cpu(), clipped: false, verdicts }
     }
 
     /// In a word, for tables.
@@ -70,8 +74,10 @@ impl Claim {
         match self {
             Self::Exact => "the truth",
             Self::Test(..) => "its test",
-            Self::Single { clipped: false, .. } => "L to U",
-            Self::Single { clipped: true, .. } => "rounding to U",
+            Self::Single { clipped: false, verdicts: false, .. } => "L to U",
+            Self::Single { clipped: false, verdicts: true, .. } => "the truth, or L to U",
+            Self::Single { clipped: true, verdicts: false, .. } => "rounding to U",
+            Self::Single { clipped: true, verdicts: true, .. } => "the truth, or rounding to U",
             Self::Rounded { .. } => "rounding",
         }
     }
@@ -128,11 +134,16 @@ impl<'a> Judge<'a> {
     }
 
     /// Whether the claim is about answers that are right, too.
-    pub fn judges_all(&self) -> bool {
-        matches!(self.claim, Claim::Single { .. })
+    pub fn judges_right_ones(&self) -> bool {
+        matches!(self.claim, Claim::Single { verdicts: false, .. })
     }
 
-    /// Judges an answer that is not the truth, or any if [`judges_all`](Self::judges_all).
+    /// Whether the claim is about ties that are called blocked, too.
+    pub fn judges_ties(&self) -> bool {
+        matches!(self.claim, Claim::Exact | Claim::Single { .. })
+    }
+
+    /// Judges an answer that is not the truth, or any if it [judges right ones](Self::judges_right_ones), too.
     pub fn rule(&self, ray: &Ray, blocked: bool) -> Ruling {
         let occluder = |engine: &dyn Occlusion| {
             engine.occluder(ray, &mut Tally::default()).map(|occluder| occluder.triangle)

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::{Disagreement, Report};
 use crate::exact::Verdict;
-use crate::measure::bits;
+use crate::measure::{bits, count};
 
 /// The first line of the CSV.
 const COLUMNS: &str = "contender,pixel_x,pixel_y,light,kind,said,exact,triangle,explained,origin_x,origin_y,origin_z,direction_x,direction_y,direction_z,end,bits";
@@ -39,7 +39,8 @@ impl Report {
         text
     }
 
-    /// The first disputed queries in words, those with an answer that nothing explains before the others.
+    /// The first disputed queries in words, those with an answer that nothing explains before the others, and how many
+    /// are not listed.
     #[must_use]
     pub fn listing(&self, most: usize) -> String {
         let mut by_query: BTreeMap<usize, Vec<&Disagreement>> = BTreeMap::new();
@@ -52,11 +53,12 @@ impl Report {
         for found in disputed.iter().take(most) {
             self.describe(found, &mut text);
         }
-        let more = disputed.len().saturating_sub(most);
-        if more > 0 {
-            let _ =
-                writeln!(text, "and {more} more queries; --list FILE and --stats FILE have all");
-        }
+        let unlisted = match (disputed.len().saturating_sub(most) as u64, most) {
+            (0, _) => return text,
+            (more, 0) => format!("{}, not listed", count(more, "disputed query")),
+            (more, _) => format!("and {}", count(more, "more disputed query")),
+        };
+        let _ = writeln!(text, "{unlisted}; --list FILE and --stats FILE have all");
         text
     }
 

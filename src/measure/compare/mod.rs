@@ -13,6 +13,7 @@
 //! | an engine of ours, another test | that test says the same when asked of every triangle, with no engine |
 //! | `rtcOccluded1` | it lies between L and U, which are computed bit for bit; this is asked of right answers too |
 //! | the same, default mode, high quality | above, L is proven by rounding alone: spatial splits clip the boxes |
+//! | the same, with verdicts before it | as above; a right answer needs no bound, for verdicts give the truth |
 //! | `rtcOccluded4`, `8`, `16` | a forward error bound allows it: "clear" if no triangle and its box are met by more than rounding, "blocked" if some triangle is not missed by more than rounding |
 //!
 //! The bound of packets is as wide as f32 is rough: it decides all but a few ordinary rays in a thousand, but of
@@ -42,7 +43,7 @@ use bounds::{Judge, brute};
 pub use report::{Checks, Disagreement, Kind, Report, Row};
 
 use super::contender::Contender;
-use super::recording::Recording;
+use super::recording::{NoQueries, Recording};
 use super::truth::{Truth, Truths};
 use crate::exact::Verdict;
 use crate::geometry::Ray;
@@ -65,11 +66,9 @@ pub enum CompareError {
         "a comparison needs at least two contenders, and these are {0}; name more backends, tests, methods or Embree variants"
     )]
     Few(usize),
-    /// No light faces anything that the camera sees.
-    #[error(
-        "{0}: no shadow query is asked in this picture; give the scene another camera or light"
-    )]
-    NoQueries(String),
+    /// Nothing to answer.
+    #[error(transparent)]
+    NoQueries(#[from] NoQueries),
     /// The queries are not this scene's.
     #[error(
         "{scene}: a query asks about light {light}, and there are {lights}, counted from 0; give a recording of this scene"
@@ -139,9 +138,7 @@ pub fn compare(
     if contenders.len() < 2 {
         return Err(CompareError::Few(contenders.len()));
     }
-    if recording.queries().is_empty() {
-        return Err(CompareError::NoQueries(scene.name.clone()));
-    }
+    recording.check_asked(&scene.name)?;
     let lights = scene.lights.len();
     if let Some((light, _)) = recording.runs().find(|(light, _)| *light >= lights) {
         return Err(CompareError::NoLight { scene: scene.name.clone(), light, lights });
@@ -226,14 +223,15 @@ impl<'a> Comparison<'a> {
     ) -> Option<Disagreement> {
         let truth = self.truth[query];
         let is_right = blocked == truth.is_blocked();
-        if is_right && !judge.judges_all() {
+        if is_right && !judge.judges_right_ones() {
             return None;
         }
         let ray = self.ray(query);
-        let is_free = truth.verdict == Verdict::Tie && !judge.is_exact();
-        if is_free && !judge.judges_all() {
+        let is_tie = truth.verdict == Verdict::Tie;
+        if is_tie && !judge.judges_ties() {
             return None;
         }
+        let is_free = is_tie && !judge.is_exact();
         let ruling = judge.rule(ray, blocked);
         let kind = match (is_right || is_free, blocked) {
             (true, _) if ruling.within => return None,
@@ -296,7 +294,7 @@ impl<'a> Comparison<'a> {
     /// Puts the disputed queries, and a sample, to the oracle and to brute force.
     fn check(&self, disputed: &[usize]) -> (BTreeMap<usize, Truth>, Checks) {
         let all = self.truth.len();
-        let sample = (0..all).step_by(all.div_ceil(ORACLE_SAMPLE).max(1));
+        let sample = spread(ORACLE_SAMPLE.min(all), all);
         let asked: Vec<usize> = disputed.iter().copied().chain(sample).collect();
         let verdicts: BTreeMap<usize, Truth> = asked
             .into_par_iter()
@@ -311,9 +309,9 @@ impl<'a> Comparison<'a> {
         // At least one where there are any; there may be neither queries nor triangles.
         let affordable = (BRUTE_TESTS / triangles.len().max(1)).max(1).min(all);
         let engine = brute(Test::Exact, Arithmetic::of_this_cpu(), triangles);
-        let spread = (0..affordable).map(|place| place * all / affordable);
+        let sample = spread(affordable, all);
         let asked: Vec<usize> =
-            disputed.iter().copied().take(affordable).chain(spread).take(affordable).collect();
+            disputed.iter().copied().take(affordable).chain(sample).take(affordable).collect();
         contradicted += asked
             .par_iter()
             .filter(|query| {
@@ -323,4 +321,9 @@ impl<'a> Comparison<'a> {
             .count() as u64;
         (verdicts, Checks { by_oracle, by_brute_force: asked.len() as u64, contradicted })
     }
+}
+
+/// So many of all places, evenly.
+fn spread(few: usize, all: usize) -> impl Iterator<Item = usize> {
+    (0..few).map(move |place| place * all / few)
 }

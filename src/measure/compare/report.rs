@@ -5,8 +5,8 @@ use serde::{Serialize, Serializer};
 use super::Claim;
 use crate::exact::Verdict;
 use crate::geometry::{Ray, TriangleId};
-use crate::measure::bits;
 use crate::measure::wilson::PerMillion;
+use crate::measure::{bits, count};
 
 /// How an answer is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -162,18 +162,16 @@ impl Report {
             self.contenders.iter().find(|row| row.is_exact == is_exact && row.unexplained > 0)
         };
         if self.checks.contradicted > 0 {
-            let times = self.checks.contradicted;
-            return Some(format!(
-                "the truth was contradicted {times} times by oracle or brute force"
-            ));
+            let times = count(self.checks.contradicted, "time");
+            return Some(format!("the truth was contradicted {times} by oracle or brute force"));
         }
         if let Some(Row { name, unexplained, .. }) = first(true) {
-            return Some(format!("{name} claims to be exact and was wrong {unexplained} times"));
+            let times = count(*unexplained, "time");
+            return Some(format!("{name} claims to be exact and was wrong {times}"));
         }
         let Row { name, unexplained, .. } = first(false)?;
-        Some(format!(
-            "{unexplained} answers of {name} lie outside its bounds: nothing explains them"
-        ))
+        let answers = count(*unexplained, "answer");
+        Some(format!("{name} gave {answers} outside its bounds: nothing explains that"))
     }
 }
 

@@ -4,30 +4,33 @@ use std::fmt;
 
 use super::{Report, Row};
 use crate::measure::wilson::PerMillion;
-use crate::measure::{grouped, told};
+use crate::measure::{count, grouped, told};
 
-/// Widths of the columns after the name.
+/// Least widths of the columns after the name.
 const WIDTHS: [usize; 6] = [12, 26, 26, 14, 16, 13];
+
+/// Blanks before a cell that is wider than most.
+const GAP: usize = 2;
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { scene, width, height, .. } = self;
         writeln!(
             f,
-            "{scene}: {} triangles, {} lights, {width}x{height}; {} shadow queries: {} blocked, {} clear, {} ties",
-            grouped(self.triangles as u64),
-            self.lights,
-            grouped(self.queries),
+            "{scene}: {}, {}, {width}x{height}; {}: {} blocked, {} clear, {}",
+            count(self.triangles as u64, "triangle"),
+            count(self.lights as u64, "light"),
+            count(self.queries, "shadow query"),
             grouped(self.blocked),
             grouped(self.clear),
-            grouped(self.ties)
+            count(self.ties, "tie")
         )?;
         writeln!(
             f,
-            "the truth was checked by the oracle on {} of them and by brute force on {}: contradicted {} times",
+            "the truth was checked by the oracle on {} of them and by brute force on {}: contradicted {}",
             grouped(self.checks.by_oracle),
             grouped(self.checks.by_brute_force),
-            self.checks.contradicted
+            count(self.checks.contradicted, "time")
         )?;
         let name = self.contenders.iter().map(|row| row.name.len()).max().unwrap_or(0);
         let headings = [
@@ -38,9 +41,13 @@ impl fmt::Display for Report {
             "must be within",
             "unexplained",
         ];
-        line(f, name, "", &headings.map(str::to_owned))?;
-        for row in &self.contenders {
-            line(f, name, &row.name, &cells(row))?;
+        let rows: Vec<[String; 6]> = self.contenders.iter().map(cells).collect();
+        let widest = |column: usize| rows.iter().map(|cells| cells[column].len() + GAP).max();
+        let widths: [usize; 6] =
+            std::array::from_fn(|column| WIDTHS[column].max(widest(column).unwrap_or(0)));
+        line(f, name, "", &headings.map(str::to_owned), &widths)?;
+        for (row, cells) in self.contenders.iter().zip(&rows) {
+            line(f, name, &row.name, cells, &widths)?;
         }
         Ok(())
     }
@@ -57,9 +64,15 @@ fn cells(row: &Row) -> [String; 6] {
     ]
 }
 
-fn line(f: &mut fmt::Formatter<'_>, name: usize, first: &str, cells: &[String; 6]) -> fmt::Result {
+fn line(
+    f: &mut fmt::Formatter<'_>,
+    name: usize,
+    first: &str,
+    cells: &[String; 6],
+    widths: &[usize; 6],
+) -> fmt::Result {
     write!(f, "  {first:name$}")?;
-    for (cell, width) in cells.iter().zip(WIDTHS) {
+    for (cell, width) in cells.iter().zip(widths) {
         write!(f, "{cell:>width$}")?;
     }
     writeln!(f)

@@ -185,9 +185,7 @@ pub fn measure(
     let Conditions { settings, repetitions, .. } = conditions;
     Recording::check(scene, settings)?;
     let recording = Recording::of(scene, settings, &Progress::default())?;
-    if recording.queries().is_empty() {
-        return Err(MeasureError::NoQueries(scene.name.clone()));
-    }
+    recording.check_asked(&scene.name)?;
     let (_, film) = pictures::picture(scene, settings)?;
     let measured = engines::measure(scene, &recording, conditions, progress)?;
     let points = measured.points;

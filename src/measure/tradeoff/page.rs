@@ -5,7 +5,7 @@ use std::path::Path;
 use super::charts::{engine_charts, look_of, samples_chart, tessellation_charts};
 use super::{Disagreement, EnginePoint, Report, Timing};
 use crate::measure::report::{Cell, Page, Shown, bytes};
-use crate::measure::{grouped, told};
+use crate::measure::{count, grouped, told};
 use crate::occlusion::Test;
 
 /// The report as a page that is one file; `command` is what made it.
@@ -13,13 +13,13 @@ use crate::occlusion::Test;
 pub fn page(report: &Report, command: &str) -> String {
     let about = &report.circumstances;
     let lead = format!(
-        "{} triangles, {} lights; {}×{} pixels, samples each: {}; {} shadow rays, {:.1} % of them blocked.",
-        grouped(about.triangles as u64),
-        about.lights,
+        "{}, {}; {}×{} pixels, samples each: {}; {}, {:.1} % of them blocked.",
+        count(about.triangles as u64, "triangle"),
+        count(about.lights as u64, "light"),
         about.width,
         about.height,
         about.samples_per_pixel,
-        grouped(about.queries as u64),
+        count(about.queries as u64, "shadow ray"),
         100.0 * about.blocked as f64 / about.queries as f64
     );
     let file = Path::new(&about.scene).file_name();

@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use super::{EnginePoint, Report, SamplesPoint, TessellationPoint};
 use crate::measure::report::bytes;
-use crate::measure::{grouped, told};
+use crate::measure::{count, grouped, told};
 
 /// The tables of all trades: engines by speed, the front marked with a star.
 #[must_use]
@@ -18,13 +18,13 @@ fn write(text: &mut String, report: &Report) -> fmt::Result {
     let about = &report.circumstances;
     writeln!(
         text,
-        "{}: {} triangles, {} lights; {}x{}, {} shadow rays, {:.1} % blocked; threads: {}, median of {}",
+        "{}: {}, {}; {}x{}, {}, {:.1} % blocked; threads: {}, median of {}",
         about.scene,
-        grouped(about.triangles as u64),
-        about.lights,
+        count(about.triangles as u64, "triangle"),
+        count(about.lights as u64, "light"),
         about.width,
         about.height,
-        grouped(about.queries as u64),
+        count(about.queries as u64, "shadow ray"),
         100.0 * about.blocked as f64 / about.queries as f64,
         about.threads,
         about.repetitions
@@ -57,11 +57,11 @@ fn write(text: &mut String, report: &Report) -> fmt::Result {
     }
     writeln!(text, "\n  samples    seconds  spread  picture error")?;
     report.samples.iter().try_for_each(|point| samples(text, point))?;
-    writeln!(
-        text,
-        "  picture error: root mean square, in 255 levels of the screen; surface error: in diagonals of the \
-         scene"
-    )
+    let surface = match report.tessellations[..] {
+        [] => "",
+        _ => "; surface error: in diagonals of the scene",
+    };
+    writeln!(text, "  picture error: root mean square, in 255 levels of the screen{surface}")
 }
 
 fn row(point: &EnginePoint) -> String {
