@@ -13,7 +13,8 @@
 //!    candidate that was never seen is taken to be cheap there, so that it gets a chance.
 //!
 //!    Told how many queries will come, it builds for the scene as soon as 0.62 of what those still to come would cost without
-//!    is the price, and else not before a quarter more have come than were said to: who said it looked at few pixels. That share is the golden one: building in vain
+//!    is the price, and else not before a quarter more have come than were said to, for who said it looked at few pixels; then as many are
+//!    taken to come as have come. That share is the golden one: building in vain
 //!    and failing to build then cost the same, 1.62 times the best. While few batches have been seen, it must be clearer: by
 //!    nine times after the first two, of which the caches knew nothing yet; they also come from one corner of the picture. What has cost the price by
 //!    now is doubted no longer.
@@ -187,8 +188,12 @@ impl Policy {
 
     /// What may be paid by now for something of this price.
     fn worth(&self, price: f64) -> f64 {
-        if self.queries > (1.0 + SHORT_BY) * self.expected {
+        if self.expected == 0.0 {
             return self.spent;
+        }
+        if self.queries > (1.0 + SHORT_BY) * self.expected {
+            // As many again as have come.
+            return WORTH * self.spent;
         }
         let believed = (self.batches / (self.batches + DOUBT)).max((self.spent / price).min(1.0));
         let to_come = (self.expected - self.queries).max(0.0);

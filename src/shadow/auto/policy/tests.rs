@@ -189,7 +189,7 @@ fn a_word_that_is_too_large_or_too_small_costs_no_more_than_its_error() {
 #[test]
 fn a_forecast_that_is_short_by_little_has_nothing_bought_at_the_end() {
     const BATCHES: usize = 100;
-    for share in [0.8, 0.9, 0.95, 1.0] {
+    for share in [0.5, 0.7, 0.8, 0.9, 0.95, 1.0] {
         let mut world = World::flat(|_, _, _, c| [500.0, 30.0][c], 2);
         let all = 500.0 * BATCH * BATCHES as f64;
         world.scene = vec![0.0, 0.7 * all];
