@@ -15,3 +15,4 @@ pub mod render;
 pub mod scene;
 pub mod shadow;
 pub mod whole_file;
+mod words;

@@ -12,7 +12,7 @@ use super::options::{Built, EngineOptions, MOST_DEPTH, load_scene, parse_size};
 use super::outputs::{Outputs, check_outputs};
 use super::progress::with_bar;
 use super::shadows::ShadowOptions;
-use crate::measure::{count, grouped};
+use crate::measure::{count, grouped, size};
 use crate::render::{
     Film, MOST_SAMPLES, Order, Picture, Progress, Rendered, Settings, Shown, Statistics,
     encode_picture, forecast, render,
@@ -280,10 +280,9 @@ impl Report<'_> {
         }
         let rays = self.counts.rays;
         say!(
-            "{}: {}, {}, {} {} {}; {} ({} to lights, {} of them blocked) in {:.2} s: {:.2} million a second; loaded in {:.2} s, built in {:.2} s",
+            "{}: {}, {} {} {}; {} ({} to lights, {} of them blocked) in {:.2} s: {:.2} million a second; loaded in {:.2} s, built in {:.2} s",
             self.scene,
-            count(self.triangles as u64, "triangle"),
-            count(self.lights as u64, "light"),
+            size(self.triangles, self.lights),
             self.backend,
             self.test,
             self.shadows,

@@ -14,4 +14,4 @@ pub mod wilson;
 
 pub use error::MeasureError;
 use numbers::{bits, told};
-pub(crate) use numbers::{count, grouped};
+pub(crate) use numbers::{count, grouped, size};

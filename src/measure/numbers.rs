@@ -1,6 +1,7 @@
 //! Numbers that can be read.
 
 use crate::geometry::Ray;
+use crate::words::things;
 
 /// 1234567 as 1,234,567.
 pub(crate) fn grouped(number: u64) -> String {
@@ -17,12 +18,12 @@ pub(crate) fn grouped(number: u64) -> String {
 
 /// So many things, of which one is called `one`.
 pub(crate) fn count(number: u64, one: &str) -> String {
-    let things = match one.strip_suffix("query") {
-        _ if number == 1 => one.to_owned(),
-        Some(before) => format!("{before}queries"),
-        None => format!("{one}s"),
-    };
-    format!("{} {things}", grouped(number))
+    format!("{} {}", grouped(number), things(number, one))
+}
+
+/// How large a scene is.
+pub(crate) fn size(triangles: usize, lights: usize) -> String {
+    format!("{}, {}", count(triangles as u64, "triangle"), count(lights as u64, "light"))
 }
 
 /// A share per million: rare ones in hundredths, many as whole numbers.

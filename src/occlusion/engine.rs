@@ -31,9 +31,11 @@ impl<W: Walk, T: TriangleTest> Engine<W, T> {
     /// If this CPU lacks the arithmetic: see [`Arithmetic::is_available`].
     #[must_use]
     pub fn new(triangles: Arc<Triangles>, walk: W, arithmetic: Option<Arithmetic>) -> Self {
-        let arithmetic = arithmetic.unwrap_or_else(Arithmetic::of_this_cpu);
-        let arithmetic = Available::find(arithmetic)
-            .unwrap_or_else(|| panic!("this CPU has no {} arithmetic", arithmetic.name()));
+        let arithmetic = match arithmetic {
+            None => Available::newest(),
+            Some(wanted) => Available::find(wanted)
+                .unwrap_or_else(|| panic!("this CPU has no {} arithmetic", wanted.name())),
+        };
         let transparent = W::APART.then(|| among_transparent(&triangles)).flatten();
         Self { triangles, walk, transparent, arithmetic, test: PhantomData }
     }

@@ -9,9 +9,9 @@ use super::{
     light::{is_colour, is_exposure},
     material::listed,
     sensible,
-    words::counted,
 };
 use crate::geometry::{Triangle, Triangles};
+use crate::words::counted;
 
 /// One triangle in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,13 +162,13 @@ impl Draft {
             }
         }
         if self.dropped.total() > 0 {
-            let faces = counted(self.dropped.total(), "face", "faces");
+            let faces = counted(self.dropped.total(), "face");
             self.notes.push(format!("dropped {faces}: {}", self.dropped));
         }
         if opaque.is_empty() && seen_through.is_empty() {
             let dropped = match self.dropped.total() {
                 0 => String::new(),
-                n => format!(" left of {}: {}", counted(n, "face", "faces"), self.dropped),
+                n => format!(" left of {}: {}", counted(n, "face"), self.dropped),
             };
             return Err(SceneError::Empty { name: self.name, dropped });
         }
@@ -232,7 +232,7 @@ impl Draft {
         let count = self.lights.len();
         self.lights.retain(Light::is_sound);
         if self.lights.len() < count {
-            let lights = counted((count - self.lights.len()) as u64, "light", "lights");
+            let lights = counted((count - self.lights.len()) as u64, "light");
             self.notes.push(format!("left out {lights} whose numbers make no sense"));
         }
         if self.camera.is_some_and(|camera| !camera.is_sound()) {

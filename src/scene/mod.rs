@@ -19,7 +19,6 @@ mod placement;
 mod polygon;
 mod sensible;
 mod toml;
-mod words;
 mod write;
 
 use std::{path::PathBuf, sync::Arc};

@@ -199,7 +199,7 @@ impl Arithmetic {
 
     /// Those that this CPU has, the oldest first.
     pub fn available() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().filter(|arithmetic| arithmetic.is_available())
+        Available::all().map(Available::arithmetic)
     }
 
     /// The newest that this CPU has: the one Embree chooses by itself.

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::{Report, Row};
 use crate::measure::wilson::PerMillion;
-use crate::measure::{count, grouped, told};
+use crate::measure::{count, grouped, size, told};
 
 /// Least widths of the columns after the name.
 const WIDTHS: [usize; 6] = [12, 26, 26, 14, 16, 13];
@@ -17,9 +17,8 @@ impl fmt::Display for Report {
         let Self { scene, width, height, .. } = self;
         writeln!(
             f,
-            "{scene}: {}, {}, {width}x{height}; {}: {} blocked, {} clear, {}",
-            count(self.triangles as u64, "triangle"),
-            count(self.lights as u64, "light"),
+            "{scene}: {}, {width}x{height}; {}: {} blocked, {} clear, {}",
+            size(self.triangles, self.lights),
             count(self.queries, "shadow query"),
             grouped(self.blocked),
             grouped(self.clear),

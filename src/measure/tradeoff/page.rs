@@ -5,7 +5,7 @@ use std::path::Path;
 use super::charts::{engine_charts, look_of, samples_chart, tessellation_charts};
 use super::{Disagreement, EnginePoint, Report, Timing};
 use crate::measure::report::{Cell, Page, Shown, bytes};
-use crate::measure::{count, grouped, told};
+use crate::measure::{count, grouped, size, told};
 use crate::occlusion::Test;
 
 /// The report as a page that is one file; `command` is what made it.
@@ -13,9 +13,8 @@ use crate::occlusion::Test;
 pub fn page(report: &Report, command: &str) -> String {
     let about = &report.circumstances;
     let lead = format!(
-        "{}, {}; {}×{} pixels, samples each: {}; {}, {:.1} % of them blocked.",
-        count(about.triangles as u64, "triangle"),
-        count(about.lights as u64, "light"),
+        "{}; {}×{} pixels, samples each: {}; {}, {:.1} % of them blocked.",
+        size(about.triangles, about.lights),
         about.width,
         about.height,
         about.samples_per_pixel,

@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use super::{EnginePoint, Report, SamplesPoint, TessellationPoint};
 use crate::measure::report::bytes;
-use crate::measure::{count, grouped, told};
+use crate::measure::{count, grouped, size, told};
 
 /// The tables of all trades: engines by speed, the front marked with a star.
 #[must_use]
@@ -18,10 +18,9 @@ fn write(text: &mut String, report: &Report) -> fmt::Result {
     let about = &report.circumstances;
     writeln!(
         text,
-        "{}: {}, {}; {}x{}, {}, {:.1} % blocked; threads: {}, median of {}",
+        "{}: {}; {}x{}, {}, {:.1} % blocked; threads: {}, median of {}",
         about.scene,
-        count(about.triangles as u64, "triangle"),
-        count(about.lights as u64, "light"),
+        size(about.triangles, about.lights),
         about.width,
         about.height,
         count(about.queries as u64, "shadow ray"),

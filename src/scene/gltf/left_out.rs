@@ -3,7 +3,7 @@
 use ::gltf::json::{Root, material::Material};
 
 use super::{Problem, has_triangles, material, mode};
-use crate::scene::words::counted;
+use crate::words::counted;
 
 /// The extensions that are read.
 const READ: [&str; 6] = [
@@ -64,7 +64,7 @@ pub(super) fn notes(root: &Root) -> Vec<String> {
     let mut note_materials = |is_one: fn(&Material) -> bool, verbs: [&str; 2], what: &str| {
         let count = root.materials.iter().filter(|material| is_one(material)).count();
         if count > 0 {
-            let materials = counted(count as u64, "material", "materials");
+            let materials = counted(count as u64, "material");
             notes.push(format!("{materials} {} {what}", verbs[usize::from(count > 1)]));
         }
     };

@@ -66,7 +66,7 @@ impl Reader<'_> {
         self.draft.materials = root.materials.iter().map(material::material).collect();
         // What has no material is plain grey.
         self.draft.materials.push(Default::default());
-        let transforms = NodeTransforms::of(self.container.json, root.nodes.len())?;
+        let transforms = NodeTransforms::of(self.container.json, &root)?;
         let counts = nodes::count_triangles(&root)?;
         let scene = match (root.scene, &root.scenes[..]) {
             (Some(scene), scenes) => item(scenes, scene.value(), "scene")?,
@@ -165,7 +165,7 @@ impl Reader<'_> {
                     ));
                 }
             };
-            Ok(transforms.world(root, joint.value()) * unbound)
+            Ok(transforms.world(joint.value()) * unbound)
         };
         skin.joints.iter().enumerate().map(joint).collect::<Result<_, Problem>>().map(Some)
     }

@@ -14,6 +14,9 @@ const MOST_PLACEMENTS: u64 = 100_000_000;
 pub(super) struct NodeTransforms {
     #[serde(default)]
     nodes: Vec<NodeTransform>,
+    /// The first node that each is a child of.
+    #[serde(skip)]
+    parents: Vec<Option<usize>>,
 }
 
 #[derive(Deserialize)]
@@ -37,26 +40,27 @@ impl Default for NodeTransform {
 }
 
 impl NodeTransforms {
-    pub(super) fn of(json: &[u8], count: usize) -> Result<Self, Problem> {
-        let transforms: Self =
+    pub(super) fn of(json: &[u8], root: &Root) -> Result<Self, Problem> {
+        let mut transforms: Self =
             serde_json::from_slice(json).map_err(|e| format!("the JSON part is damaged: {e}"))?;
-        debug_assert_eq!(transforms.nodes.len(), count);
+        debug_assert_eq!(transforms.nodes.len(), root.nodes.len());
+        transforms.parents = vec![None; root.nodes.len()];
+        for (node, parent) in root.nodes.iter().zip(0..) {
+            for child in node.children.iter().flatten() {
+                // Those that are not there are refused where children are walked.
+                if let Some(first) = transforms.parents.get_mut(child.value()) {
+                    first.get_or_insert(parent);
+                }
+            }
+        }
         Ok(transforms)
     }
 
     /// From the node to the world, along its parents: a skin names joints wherever they stand. No node is below itself,
     /// as [`count_triangles`] has made sure.
-    pub(super) fn world(&self, root: &Root, node: usize) -> DAffine3 {
-        let holds = |parent: &Node, node: usize| {
-            parent.children.iter().flatten().any(|child| child.value() == node)
-        };
-        let mut world = self.local(node);
-        let mut node = node;
-        while let Some(parent) = root.nodes.iter().position(|parent| holds(parent, node)) {
-            world = self.local(parent) * world;
-            node = parent;
-        }
-        world
+    pub(super) fn world(&self, node: usize) -> DAffine3 {
+        let above = std::iter::successors(self.parents[node], |&parent| self.parents[parent]);
+        above.fold(self.local(node), |world, parent| self.local(parent) * world)
     }
 
     /// From the node to its parent.

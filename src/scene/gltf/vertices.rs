@@ -9,7 +9,8 @@ use ::gltf::json::{
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::{Problem, container::Container, elements::Elements};
-use crate::scene::{DraftTriangle, placement::Placement, words::counted};
+use crate::scene::{DraftTriangle, placement::Placement};
+use crate::words::counted;
 
 /// How the vertices of a mesh come into the world.
 pub(super) struct Pose<'a> {
@@ -64,8 +65,8 @@ impl<'a> Vertices<'a> {
         if !pose.weights.is_empty() && pose.weights.len() != stored.len() {
             return Err(format!(
                 "a mesh has {} for {}; give one for each",
-                counted(pose.weights.len() as u64, "weight", "weights"),
-                counted(stored.len() as u64, "morph target", "morph targets")
+                counted(pose.weights.len() as u64, "weight"),
+                counted(stored.len() as u64, "morph target")
             ));
         }
         for (&weight, target) in pose.weights.iter().zip(stored) {
