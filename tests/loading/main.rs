@@ -1,6 +1,7 @@
 //! What the loaders make of small files, sound and damaged.
 
 mod damaged_gltf;
+mod foreign_gltf;
 mod foreign_obj;
 mod gltf;
 mod gltf_materials;
