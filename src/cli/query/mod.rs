@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{Built, EngineOptions, load_triangles};
+use super::options::{Built, EngineOptions, load_triangles, note_transparent};
 use super::outputs::{Outputs, STANDARD_OUTPUT, check_outputs, unprinted};
 use super::progress::with_rate;
 use crate::geometry::Ray;
@@ -122,7 +122,8 @@ impl Query {
 
     fn answer(&self, mut rows: Rows, outputs: &[&Path]) -> Result<(), Failure> {
         let start = Instant::now();
-        let scene = load_triangles(&self.scene, outputs)?;
+        let mut scene = load_triangles(&self.scene, outputs)?;
+        note_transparent(&mut scene, "query");
         let load_seconds = start.elapsed().as_secs_f64();
         let Built { backend, seconds: build_seconds, .. } = self.engine.build(&scene)?;
         let start = Instant::now();
