@@ -27,7 +27,7 @@ use rows::{Format, Rows};
 
 const DETAILS: &str = "\
 Rays are rows of six numbers, ox,oy,oz,tx,ty,tz: an origin and a target. They are either lines of
-CSV (a header ox,oy,oz,tx,ty,tz, blank lines and lines that begin with # are skipped) or a NumPy array
+CSV (a header ox,oy,oz,tx,ty,tz, blank lines and what follows a # are skipped) or a NumPy array
 of shape (N, 6), float32 or float64, little-endian, saved as .npy. The answers are of the same kind
 and in the same order: a line 0 or 1 for each row, or an array of N uint8.
 
