@@ -188,6 +188,21 @@ mod tests {
     }
 
     #[test]
+    fn a_ray_that_ends_before_a_large_triangle_is_not_near_it_from_thirty_thousand_sizes_away() {
+        let corner = |(y, z)| Vec3::new(-1e-4, y, z);
+        let triangle = [(-0.97, -0.93), (0.99, -0.91), (0.05, 0.96)].map(corner);
+        let (slack, mut random) = (slack(0.99), SplitMix64::seeded(2));
+        for _ in 0..10_000 {
+            let size = 30_000.0 * (0.75 + 0.25 * any(&mut random));
+            let origin = size * (0.9 + 0.1 * any_point(&mut random));
+            // Along x nothing is rounded: the end is 20 slacks before the plane.
+            let ray = Ray::between(origin, 0.1 * any_point(&mut random).with_x(0.0));
+            assert!(!meets(&ray, &triangle, slack), "{ray:?}");
+            assert!(meets(&Ray { end: 1.001, ..ray }, &triangle, slack), "{ray:?}");
+        }
+    }
+
+    #[test]
     fn nothing_is_near_a_triangle_that_is_not_finite() {
         let broken = [Vec3::ZERO, Vec3::new(f32::INFINITY, 0.0, 0.0), Vec3::Y];
         assert!(!meets(&down(0.2, 0.2), &broken, 0.01));
