@@ -76,8 +76,10 @@ impl Embree {
         robust: bool,
         options: EmbreeOptions,
     ) -> Result<Self, embree_ffi::Error> {
-        let config = DeviceConfig::default().threads(rayon::current_num_threads());
-        let config = options.isa.map_or(config, |isa| config.isa(isa));
+        let mut config = DeviceConfig::default().threads(rayon::current_num_threads());
+        if let Some(isa) = options.isa {
+            config = config.isa(isa);
+        }
         let device = Device::new(config)?;
         let quality = match options.quality {
             Quality::Low => BuildQuality::Low,
