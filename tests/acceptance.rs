@@ -6,20 +6,10 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{Random, soup, sphere};
+use common::{BACKENDS, Random, engine, soup, sphere};
 use glam::Vec3;
 use umbra::geometry::{Ray, Triangle, Triangles, is_finite};
-use umbra::occlusion::{Backend, BuildOptions, LeftOut, Occlusion, Tally, Test, build};
-
-/// Every backend that this build has.
-const BACKENDS: &[Backend] = &[
-    Backend::Grid,
-    Backend::Bvh2,
-    Backend::Cwbvh,
-    Backend::Brute,
-    #[cfg(feature = "embree")]
-    Backend::Embree,
-];
+use umbra::occlusion::{LeftOut, Occlusion, Tally, Test};
 
 /// Embree's criterion for watertightness: at most this share of rays may leak.
 const LEAKS_ALLOWED: f64 = 0.000_02;
@@ -50,8 +40,7 @@ fn contenders_with(triangles: impl Into<Arc<Triangles>>, tests: &[Test]) -> Vec<
     for &backend in BACKENDS {
         for &test in tests {
             if backend.has(test) {
-                let engine = build(backend, test, &triangles, &BuildOptions::default())
-                    .unwrap_or_else(|error| panic!("{error}"));
+                let engine = engine(backend, test, &triangles);
                 contenders.push(Contender { name: format!("{backend} {test}"), engine });
             }
         }
@@ -270,7 +259,7 @@ fn inactive_rays_are_not_blocked_are_counted_and_disturb_no_neighbour() {
 
 #[cfg(feature = "embree")]
 fn embree_packets(triangles: &Arc<Triangles>) -> Vec<Contender> {
-    use umbra::occlusion::{EmbreeOptions, PacketWidth};
+    use umbra::occlusion::{Backend, BuildOptions, EmbreeOptions, PacketWidth, build};
     let widths = [PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen];
     let built = widths.into_iter().flat_map(|width| [(width, false), (width, true)]).filter_map(
         |(width, coherent)| {
@@ -493,7 +482,7 @@ fn triangles_on_the_planes_of_spatial_splits() {
 
 #[cfg(feature = "embree")]
 fn high_quality_builds(triangles: &[Triangle]) {
-    use umbra::occlusion::{EmbreeOptions, Quality};
+    use umbra::occlusion::{Backend, BuildOptions, EmbreeOptions, Quality, build};
     let embree = EmbreeOptions { quality: Quality::High, ..EmbreeOptions::default() };
     let options = BuildOptions { embree, ..BuildOptions::default() };
     let built = build(Backend::Embree, Test::Moller, &mesh(triangles.iter().copied()), &options);

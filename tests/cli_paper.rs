@@ -4,13 +4,14 @@ mod common;
 
 use std::process::Command;
 
-use common::command::{assert_refusal, run, said, umbra};
+use common::command::{assert_refusal, refused, run, said, umbra};
 use serde_json::Value;
 
 /// Runs `umbra paper` on a small picture of the drum; gives what it printed and its JSON.
 fn paper(options: &str) -> (String, Value) {
     let folder = tempfile::tempdir().unwrap();
-    let line = format!("paper --quick --size 32x24 --scene drum --stats table.json {options}");
+    let size = if options.contains("--size") { "" } else { "--size 32x24" };
+    let line = format!("paper --quick {size} --scene drum --stats table.json {options}");
     let output = run(folder.path(), &line);
     assert!(output.status.success(), "umbra {line}: {}", said(&output));
     let json = std::fs::read(folder.path().join("table.json")).unwrap();
@@ -43,6 +44,28 @@ fn every_variant_makes_the_same_picture() {
     for variant in json["scenes"][0]["variants"].as_array().unwrap() {
         assert!(text.contains(variant["name"].as_str().unwrap()), "{variant} is not in:\n{text}");
     }
+}
+
+#[test]
+fn variants_are_not_compared_with_pictures_of_no_tile() {
+    let folder = tempfile::tempdir().unwrap();
+    // Of 80x60 pixels there are 20 tiles, and 60 scanlines.
+    let line = |every: u32| format!("paper --quick --scene drum --backends grid --every {every}");
+    for every in [21, 48, 60] {
+        refused(
+            folder.path(),
+            &format!("{} --variants", line(every)),
+            &[&format!("every {every}"), "1 to 20", "tiles"],
+        );
+    }
+    let told = ["every 61", "1 to 60", "scanlines"];
+    refused(folder.path(), &format!("{} --variants", line(61)), &told);
+    let (_, json) = paper("--size 80x60 --backends grid --every 20 --variants");
+    for variant in json["scenes"][0]["variants"].as_array().unwrap() {
+        assert!(variant["rays"].as_u64().unwrap() > 0, "{variant}");
+    }
+    // The table is made of scanlines alone.
+    assert!(run(folder.path(), &line(60)).status.success());
 }
 
 #[test]

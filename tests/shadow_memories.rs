@@ -1,16 +1,14 @@
 //! Memories may hold anything: they only say "blocked", on a triangle's word. And they are small.
 
 mod common;
-#[path = "common/rooms.rs"]
-mod rooms;
 
 use std::sync::Arc;
 
-use common::{Aim, Random, soup};
+use common::{Aim, BACKENDS, Random, engine, soup};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use umbra::geometry::{Ray, Triangle, TriangleId, Triangles};
-use umbra::occlusion::{Backend, BuildOptions, Cell, LeftOut, Occlusion, Tally, Test, build};
+use umbra::occlusion::{Backend, Cell, LeftOut, Occlusion, Tally, Test};
 use umbra::shadow::{
     Answer, Caster, Direct, Fronts, Inquiry, LastCell, LastOccluder, LastVoxel, Memory, Nearby,
     Path, PerLight, PerPath, Retest, ShadowQuery, Shadows, Shelf, Sparing, Tolerance,
@@ -27,12 +25,10 @@ impl World {
     fn new(mesh: Vec<Triangle>, opaque: usize) -> Self {
         let (front, back) = mesh.split_at(opaque);
         let triangles = Arc::new(Triangles::new(front.to_vec(), back.to_vec()));
-        let names = rooms::BACKENDS.iter().filter(|name| **name != Backend::Brute);
+        let others = BACKENDS.iter().filter(|name| **name != Backend::Brute);
         let backends = std::iter::once(&Backend::Brute)
-            .chain(names)
-            .filter_map(|name| {
-                build(*name, Test::Pluecker, &triangles, &BuildOptions::default()).ok()
-            })
+            .chain(others)
+            .map(|&name| engine(name, Test::Pluecker, &triangles))
             .collect();
         Self { mesh, triangles, backends }
     }

@@ -165,6 +165,9 @@ impl Paper {
     pub fn run(self) -> Result<(), Failure> {
         let conditions = self.conditions();
         conditions.check(self.scenes())?;
+        if self.variants {
+            conditions.check_variants(self.scenes())?;
+        }
         let options = [("--grid", self.grid.is_some()), ("--uniform", self.uniform)];
         only_over(Backend::Grid, &conditions.backends, &options)?;
         let is_embree = |backend: &Backend| *backend == Backend::Embree;

@@ -40,6 +40,16 @@ pub enum MeasureError {
         /// Scanlines of the picture.
         height: u32,
     },
+    /// No tile would be rendered.
+    #[error(
+        "every {every}: give 1 to {tiles}, the tiles of the picture, as some variants render tiles"
+    )]
+    EveryTile {
+        /// What was asked for.
+        every: u32,
+        /// Tiles of the picture.
+        tiles: u32,
+    },
     /// The count of instructions cannot be read.
     #[error("cannot read the count of instructions: {0}")]
     Count(#[from] io::Error),

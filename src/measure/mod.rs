@@ -10,6 +10,7 @@ pub mod recording;
 pub mod report;
 pub mod tradeoff;
 mod truth;
+mod turns;
 pub mod wilson;
 
 pub use error::MeasureError;

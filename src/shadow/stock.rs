@@ -71,6 +71,7 @@ impl<'a> Stock<'a> {
         make: impl FnOnce() -> Clusters,
     ) -> (Option<Arc<Clusters>>, usize) {
         let mut bytes = 0;
+        // `make` may take up other work while it waits for threads; none of that comes here, as one at a time prepares from a stock (see `Auto`).
         let clusters = shared.get_or_init(|| {
             let clusters = self.within_budget(count, make);
             bytes = clusters.as_ref().map_or(0, |clusters| clusters.memory());

@@ -4,8 +4,27 @@
 pub mod command;
 pub mod lit;
 
+use std::sync::Arc;
+
 use glam::Vec3;
-use umbra::geometry::{Ray, Triangle};
+use umbra::geometry::{Ray, Triangle, Triangles};
+use umbra::occlusion::{Backend, BuildOptions, Occlusion, Test, build};
+
+/// Every backend that this build has.
+pub const BACKENDS: &[Backend] = &[
+    Backend::Grid,
+    Backend::Bvh2,
+    Backend::Cwbvh,
+    Backend::Brute,
+    #[cfg(feature = "embree")]
+    Backend::Embree,
+];
+
+/// A backend as it is built by itself. That it cannot be built is a failure, of whatever test.
+pub fn engine(backend: Backend, test: Test, triangles: &Arc<Triangles>) -> Box<dyn Occlusion> {
+    build(backend, test, triangles, &BuildOptions::default())
+        .unwrap_or_else(|error| panic!("{backend} {test}: {error}"))
+}
 
 /// SplitMix64: the same numbers on every machine.
 pub struct Random(pub u64);

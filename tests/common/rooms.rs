@@ -3,28 +3,14 @@
 
 use glam::{DVec3, Vec3};
 use umbra::geometry::Triangle;
-use umbra::occlusion::{Backend, BuildOptions, Occlusion, Test, build};
+use umbra::occlusion::{Backend, Occlusion, Test};
 use umbra::scene::{Camera, Draft, DraftTriangle, Light, Material, Scene, builtin};
 
-use super::common::{soup, sphere};
+use super::common::{BACKENDS, engine, soup, sphere};
 
-/// Every backend that this build has.
-pub const BACKENDS: &[Backend] = &[
-    Backend::Grid,
-    Backend::Bvh2,
-    Backend::Cwbvh,
-    Backend::Brute,
-    #[cfg(feature = "embree")]
-    Backend::Embree,
-];
-
-/// The backends over a scene; one that is not to be had here is left out.
+/// Every backend over a scene.
 pub fn backends(scene: &Scene) -> Vec<(Backend, Box<dyn Occlusion>)> {
-    let made = BACKENDS.iter().filter_map(|&backend| {
-        let built = build(backend, Test::Pluecker, &scene.triangles, &BuildOptions::default());
-        Some((backend, built.ok()?))
-    });
-    made.collect()
+    BACKENDS.iter().map(|&name| (name, engine(name, Test::Pluecker, &scene.triangles))).collect()
 }
 
 /// A box full of small triangles, a mirrored ball and a glass ball: every kind of ray occurs, and

@@ -34,6 +34,7 @@ mod table;
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::mem::replace;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
@@ -309,9 +310,7 @@ impl<'a> Comparison<'a> {
         // At least one where there are any; there may be neither queries nor triangles.
         let affordable = (BRUTE_TESTS / triangles.len().max(1)).max(1).min(all);
         let engine = brute(Test::Exact, Arithmetic::of_this_cpu(), triangles);
-        let sample = spread(affordable, all);
-        let asked: Vec<usize> =
-            disputed.iter().copied().take(affordable).chain(sample).take(affordable).collect();
+        let asked = chosen(disputed, affordable, all);
         contradicted += asked
             .par_iter()
             .filter(|query| {
@@ -323,7 +322,45 @@ impl<'a> Comparison<'a> {
     }
 }
 
+/// So many of all queries, each once: the disputed ones first, then others, evenly.
+fn chosen(disputed: &[usize], few: usize, all: usize) -> Vec<usize> {
+    let evenly = spread(few.saturating_sub(disputed.len()), all);
+    // Where the even ones meet disputed ones, others take their place.
+    let in_turn = disputed.iter().copied().chain(evenly).chain(0..all);
+    let mut is_chosen = vec![false; all];
+    in_turn.filter(|&query| !replace(&mut is_chosen[query], true)).take(few).collect()
+}
+
 /// So many of all places, evenly.
 fn spread(few: usize, all: usize) -> impl Iterator<Item = usize> {
     (0..few).map(move |place| place * all / few)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn brute_force_checks_each_query_once_and_all_of_them_where_its_time_allows() {
+        let disputed = [0, 3, 4, 8, 9];
+        for few in 0..=10 {
+            let mut asked = chosen(&disputed, few, 10);
+            let known = few.min(disputed.len());
+            assert_eq!(asked[..known], disputed[..known], "the disputed ones first");
+            asked.sort_unstable();
+            asked.dedup();
+            assert_eq!(asked.len(), few, "{asked:?}");
+        }
+        assert!(chosen(&[], 0, 0).is_empty());
+    }
+
+    #[test]
+    fn what_brute_force_checks_besides_disputed_queries_is_spread_over_all() {
+        let disputed: Vec<usize> = (0..50).collect();
+        let asked = chosen(&disputed, 100, 1000);
+        for tenth in 0..10 {
+            let range = 100 * tenth..100 * (tenth + 1);
+            assert!(asked.iter().any(|query| range.contains(query)), "none of {range:?}");
+        }
+    }
 }

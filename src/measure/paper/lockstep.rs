@@ -13,12 +13,11 @@
 //!
 //! None of this is needed where Callgrind counts: there everyone renders once, one after the other.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
-
 use glam::Vec3;
 
 use super::Meter;
 use crate::measure::MeasureError;
+use crate::measure::turns::order_of;
 use crate::occlusion::Occlusion;
 use crate::render::{Pieces, Piecewise, Place, Progress, Settings, Statistics};
 use crate::scene::Scene;
@@ -137,15 +136,4 @@ fn render_in_turns(
         };
     }
     Ok(taken)
-}
-
-/// The numbers below `count` in an order drawn for a piece.
-fn order_of(count: usize, piece: (usize, usize)) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..count).collect();
-    order.sort_by_cached_key(|which| {
-        let mut hasher = DefaultHasher::new();
-        (which, piece).hash(&mut hasher);
-        hasher.finish()
-    });
-    order
 }

@@ -114,6 +114,27 @@ impl Conditions {
         Ok(())
     }
 
+    /// Whether the variants can be compared in these scenes, besides what [`check`](Self::check) looks at.
+    ///
+    /// # Errors
+    /// Says why not.
+    pub fn check_variants<'a>(
+        &self,
+        scenes: impl Iterator<Item = &'a Published>,
+    ) -> Result<(), MeasureError> {
+        let every = self.every;
+        for published in scenes {
+            let Settings { width, height, samples, rows_per_unit, .. } =
+                self.settings(published.scene);
+            // More are rendered where dear ones are cut; how many only the scene would tell.
+            let tiles = Order::Tiles.units([width, height], rows_per_unit, samples).len() as u32;
+            if every > tiles {
+                return Err(MeasureError::EveryTile { every, tiles });
+            }
+        }
+        Ok(())
+    }
+
     /// Pixels that will be rendered of a scene, over all repetitions of so many methods.
     fn pixels_by(&self, scene: &str, methods: usize) -> u64 {
         let Settings { width, height, .. } = self.settings(scene);

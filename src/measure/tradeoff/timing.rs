@@ -1,6 +1,10 @@
 //! Medians of measurements, and how far they spread.
 
+use std::collections::BTreeSet;
+
 use serde::Serialize;
+
+use crate::measure::turns::order_of;
 
 /// Several measurements of one thing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -44,13 +48,33 @@ impl Timing {
     }
 }
 
-/// Whose turn it is: all of `count` once in each repetition, each time beginning elsewhere, so that nobody is
-/// always first, or always after the same neighbour's warm-up.
-pub fn turns(count: usize, repetitions: usize) -> impl Iterator<Item = usize> {
-    let stride = count.div_ceil(repetitions.max(1)).max(1);
-    (0..repetitions).flat_map(move |repetition| {
-        (0..count).map(move |turn| (turn + repetition * stride) % count)
-    })
+/// Orders that are drawn for a repetition. The best is taken: in most of them somebody runs after the same one again.
+const DRAWS: usize = 100;
+
+/// Whose turn it is: all of `count` once in each repetition. Whoever ran before leaves caches and a clock rate behind, so
+/// nobody runs after themselves, and as few as can be after one whom they ran after before.
+pub fn turns(count: usize, repetitions: usize) -> Vec<usize> {
+    let mut turns = Vec::new();
+    let mut known = BTreeSet::new();
+    for repetition in 0..repetitions {
+        let last = turns.pop();
+        let draws = (0..DRAWS).map(|draw| -> Vec<usize> {
+            last.into_iter().chain(order_of(count, (repetition, draw))).collect()
+        });
+        let repeated = |drawn: &Vec<usize>| {
+            let alone = pairs(drawn).filter(|(before, after)| before == after).count();
+            (alone, pairs(drawn).filter(|pair| known.contains(pair)).count())
+        };
+        let best = draws.min_by_key(repeated).unwrap_or_default();
+        known.extend(pairs(&best));
+        turns.extend(best);
+    }
+    turns
+}
+
+/// Who runs before whom.
+fn pairs(turns: &[usize]) -> impl Iterator<Item = (usize, usize)> {
+    turns.windows(2).map(|pair| (pair[0], pair[1]))
 }
 
 #[cfg(test)]
@@ -68,13 +92,33 @@ mod tests {
     }
 
     #[test]
-    fn everyone_has_a_turn_in_every_repetition_and_another_begins() {
-        let all: Vec<usize> = turns(5, 3).collect();
-        for repetition in all.chunks(5) {
-            let mut sorted = repetition.to_vec();
-            sorted.sort_unstable();
-            assert_eq!(sorted, [0, 1, 2, 3, 4]);
+    fn everyone_has_a_turn_in_every_repetition() {
+        for (count, repetitions) in [(0, 2), (1, 3), (2, 2), (5, 3), (40, 5)] {
+            let all = turns(count, repetitions);
+            assert_eq!(all.len(), count * repetitions);
+            for repetition in all.chunks(count.max(1)) {
+                let mut sorted = repetition.to_vec();
+                sorted.sort_unstable();
+                assert!(sorted.iter().copied().eq(0..count), "{all:?}");
+            }
         }
-        assert!(all[0] != all[5] && all[5] != all[10] && all[0] != all[10]);
+        assert!(turns(3, 0).is_empty());
+    }
+
+    #[test]
+    fn everyone_runs_after_different_ones_over_the_repetitions() {
+        for count in 3..60 {
+            for repetitions in 2..8 {
+                let all = turns(count, repetitions);
+                for which in 0..count {
+                    let after = pairs(&all).filter(|(_, after)| *after == which);
+                    let before: Vec<usize> = after.map(|(before, _)| before).collect();
+                    let different: BTreeSet<usize> = before.iter().copied().collect();
+                    let context = format!("{which} of {count}, {repetitions} times: {all:?}");
+                    assert!(!different.contains(&which), "after itself: {context}");
+                    assert!(different.len() > 1 || before.len() < 2, "the same: {context}");
+                }
+            }
+        }
     }
 }
