@@ -178,3 +178,47 @@ fn a_ray_that_was_tested_against_one_cell_still_meets_the_others() {
         assert_eq!(found, lazy.occluded(&ray, tally), "{ray:?} {cell:?}");
     }
 }
+
+#[test]
+fn the_cell_of_an_occluder_can_be_asked_whatever_voxel_it_was_met_in() {
+    // Of a divided voxel with many triangles it was no run of the order, and whoever asked it panicked.
+    let mesh = sphere(Vec3::ZERO, 0.5, 60);
+    let triangles = triangles(&mesh);
+    let engine = engine(&triangles, GridOptions { resolution: Some([2; 3]), ..LAZY });
+    let mut random = Random(22);
+    let mut without = 0;
+    for _ in 0..200 {
+        let ray = Aim::Random.ray(&mesh, &mut random);
+        let tally = &mut Tally::default();
+        let mut left_out = LeftOut::new(triangles.opaque_count(), true);
+        left_out.begin(None);
+        let found = engine.occluder(&ray, tally);
+        let sparing = engine.occluder_except(&ray, None, &mut left_out, tally);
+        for cell in [found, sparing].into_iter().flatten().map(|occluder| occluder.cell) {
+            let is_empty = cell.start == cell.end;
+            without += u32::from(is_empty);
+            left_out.begin(None);
+            let inside = engine.occluder_except(&ray, Some(cell), &mut left_out, tally);
+            assert_eq!(engine.occluder_in(cell, &ray, tally).is_some(), !is_empty, "{cell:?}");
+            assert_eq!(inside.is_some(), !is_empty, "{cell:?}");
+        }
+    }
+    assert!(without > 50, "{without}");
+}
+
+#[test]
+fn what_is_nearest_is_looked_for_from_the_near_side_in_divided_voxels_too() {
+    // A column of many sheets in one voxel, and rays along it from either end.
+    let sheet = |n: u32| {
+        let z = n as f32 / 500.0 - 1.0;
+        [Vec3::new(-1.0, -1.0, z), Vec3::new(3.0, -1.0, z), Vec3::new(-1.0, 3.0, z)]
+    };
+    let triangles = triangles(&(0..1000).map(sheet).collect::<Vec<_>>());
+    let engine = engine(&triangles, GridOptions { resolution: Some([1; 3]), ..LAZY });
+    for z in [-2.0, 2.0] {
+        let tally = &mut Tally::default();
+        let ray = Ray::towards(Vec3::new(0.1, 0.2, z), Vec3::new(0.0, 0.0, -z));
+        assert!(engine.nearest(&ray, tally).is_some());
+        assert!(tally.triangle_tests <= 32, "{} from {z}", tally.triangle_tests);
+    }
+}

@@ -16,7 +16,9 @@ use super::numbers::whole;
 use super::outputs::{check_apart, check_outputs};
 use super::progress::with_word;
 use crate::measure::contender;
-use crate::occlusion::{Backend, BackendError, BuildOptions, GridOptions, Occlusion, Test, build};
+use crate::occlusion::{
+    Backend, BackendError, BuildOptions, GridError, GridOptions, Occlusion, Test, build,
+};
 use crate::scene::{Camera, Draft, Light, Scene};
 use crate::shadow::Combination;
 
@@ -157,7 +159,8 @@ impl EngineOptions {
             resolution: self.grid,
             nested: !self.uniform,
             lazy: self.lazy,
-            most_bytes: self.most_bytes(),
+            // A grid that is built at once and takes too much gives way to a coarser one.
+            most_bytes: self.most_bytes().filter(|_| self.lazy),
         };
         let start = Instant::now();
         with_word(&format!("building {}", self.backend), || {
@@ -181,27 +184,40 @@ impl EngineOptions {
     fn within_memory(
         &self,
         scene: &Scene,
-        mut backend: Box<dyn Occlusion>,
+        backend: Box<dyn Occlusion>,
     ) -> Result<Box<dyn Occlusion>, Failure> {
         /// How many times fewer voxels the next coarser grid has.
         const COARSER: usize = 8;
         let Some(limit) = &self.memory else { return Ok(backend) };
-        let mut voxels = scene.triangles.len();
-        while backend.memory() as u64 > limit.bytes && self.backend == Backend::Grid && voxels > 0 {
-            let grid = GridOptions::uniform(&scene.triangles, voxels);
-            // Gone before the next comes.
-            drop(backend);
-            backend = self.build_over(scene, grid)?;
-            if backend.memory() as u64 <= limit.bytes {
-                let [x, y, z] = grid.resolution.expect("a number of voxels gives a resolution");
-                say!("umbra: {x} by {y} by {z} voxels only, to keep to the memory limit");
-            }
+        let mut bytes = backend.memory() as u64;
+        if bytes <= limit.bytes {
+            return Ok(backend);
+        }
+        // Gone before another comes.
+        drop(backend);
+        let mut voxels = match self.backend {
+            // Each takes eight bytes while a grid is built.
+            Backend::Grid => scene.triangles.len().min((limit.bytes / 8).max(1) as usize),
+            _ => 0,
+        };
+        while voxels > 0 {
+            let grid = GridOptions {
+                most_bytes: Some(limit.bytes),
+                ..GridOptions::uniform(&scene.triangles, voxels)
+            };
+            bytes = match self.build_over(scene, grid) {
+                Ok(coarser) if coarser.memory() as u64 <= limit.bytes => {
+                    let [x, y, z] = grid.resolution.expect("a number of voxels gives a resolution");
+                    say!("umbra: {x} by {y} by {z} voxels only, to keep to the memory limit");
+                    return Ok(coarser);
+                }
+                Ok(coarser) => coarser.memory() as u64,
+                Err(BackendError::Grid(GridError::TooFine(refused))) => refused.bytes(),
+                Err(error) => return Err(error.into()),
+            };
             voxels = if voxels == 1 { 0 } else { (voxels / COARSER).max(1) };
         }
-        match backend.memory() as u64 {
-            bytes if bytes > limit.bytes => Err(limit.too_little(self.backend, bytes)),
-            _ => Ok(backend),
-        }
+        Err(limit.too_little(self.backend, bytes))
     }
 
     /// Refuses what only the grid has, where another engine was asked for.

@@ -17,8 +17,8 @@
 //! > E (w·|c|)/2 for U and V,  2E² |d|₁ for n·d,  2E² |c|₁ for T (with γ₈, for one more difference).
 //!
 //! W subtracts twice more: its error, *plus that of n·d*, is below γ₉ (E (w·|c|) + 4E² |d|₁). That is the bound
-//! that U, V and W are all compared with, with 10u in place of γ₉ because the bound is itself rounded, eight
-//! times at most: 10u (1−u)⁸ > γ₉.
+//! that U, V and W are all compared with, with 10u in place of γ₉ because the bound is itself rounded, twelve
+//! times at most, as those of start and end are: 10u (1−u)¹² > γ₉.
 //! * All three above the bound: all have sign s, and s is the sign of the slope. The line meets the interior.
 //! * One of them, X, below minus the bound: X < 0, and the other two add up to s(n·d) − X, which is above zero even if
 //!   rounding got s wrong, as the bound has room for the error of n·d too. So one of those is positive, the signs
@@ -26,7 +26,8 @@
 //!
 //! The interval 0 < T < end·|n·d| is compared without division. A finite end is the ratio end/1, an infinite
 //! one 1/0; for p/q the second comparison is p|n·d| − qT > 0, whose terms meet nine roundings: its error is
-//! below γ₉ 2E² (p|d|₁ + q|c|₁); the code has 5u times 4E² in place of 10u times 2E². Beyond the ends a lane is only let go if the sign of the slope is certain.
+//! below γ₉ 2E² (p|d|₁ + q|c|₁); for both comparisons the code has 5u times 4E² in place of
+//! 10u times 2E². Beyond the ends a lane is only let go if the sign of the slope is certain.
 //!
 //! **Underflow.** Sums and differences never lose anything to underflow. A product does, at most η = 2⁻¹⁵⁰.
 //! Carried through, that adds at most (12E + 4|d|₁ + 12)η to the error of W plus that of n·d, (2|c|₁ + 3)η to

@@ -157,7 +157,7 @@ impl<'a, T: TriangleTest, L: Lanes, const IN_PLACE: bool> AnyVisitor<'a, T, L, I
             ids,
             wanted: move |id| id < opaque,
             hit: move |triangle| {
-                **found = Some(Occluder { triangle, cell });
+                **found = Some(Occluder::shown(triangle, cell));
                 ControlFlow::Break(())
             },
             test: PhantomData,

@@ -4,16 +4,19 @@
 //! CWBVH, 1.2e-7 in its inverse), and does not widen its boxes for rounding. So umbra gives it
 //! neither the scene's coordinates nor the query's ray: triangles' boxes are mapped in f64 so that
 //! the scene fills a unit cube, and padded; the ray is clipped and mapped in f64, normalised, and
-//! starts a little before the scene. There the unit is known, and the padding covers every rounding:
+//! starts a little before the scene. There the unit is known. The padding is 64 roundings of the largest coordinate (`clip`), of which a
+//! ray may be 48 beside a triangle that it meets. The other 16 are 2⁻¹⁹ of that coordinate, and as no side is longer
+//! than two of it, almost 16u of the cube's side, with u = 2⁻²⁴. They cover every rounding:
 //!
 //! | error, in units of the cube's side | bound |
 //! | --- | --- |
-//! | box rounded to f32 | 2⁻²⁴ |
-//! | ray origin rounded (coordinates below 2) | 2⁻²⁴ |
-//! | plane distance, product with the inverse, inverse itself: 3 roundings of t ≤ 2 | 6 · 2⁻²⁴ |
-//! | direction rounded, over t ≤ 2 | 2 · 2⁻²⁴ |
+//! | box rounded to f32 | 1u |
+//! | ray origin rounded (coordinates below 2) | 1u |
+//! | BVH2: plane distance, product with the inverse, inverse itself: 3 roundings of t ≤ 2 | 6u |
+//! | CWBVH: plane in the node 2u, the node's corner 3u, each of at most 1.1; their sum, of t ≤ 2: 2u | 8u |
+//! | direction rounded, over t ≤ 2 | 2u |
 //!
-//! Together 10 · 2⁻²⁴ < 2⁻²⁰ = [`PADDING`]. (CWBVH quantises boxes outwards from the padded ones.)
+//! Together 10u in a BVH2, and 13u in a CWBVH, which quantises boxes outwards from the padded ones, with one more rounding.
 
 use std::collections::HashSet;
 
@@ -27,9 +30,6 @@ use super::brute::visit_all;
 use super::clip::{Clip, clip, padding};
 use crate::geometry::random::scattered;
 use crate::geometry::{Bounds, Ray, TriangleId, Triangles, is_finite};
-
-/// See the table above.
-const PADDING: f64 = 1.0 / (1 << 20) as f64;
 
 /// The culling ray starts and ends this far outside the clipped segment: beyond the 1e-4 within
 /// which obvhs' CWBVH does not see.
@@ -62,7 +62,7 @@ impl CullingSpace {
         let bounds = &triangles.bounds().unwrap_or_default();
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let side = (max - min).max_element();
-        let pad = padding(bounds, PADDING * side);
+        let pad = padding(bounds, 0.0);
         Self { min: min - pad, max: max + pad, scale: (side + 2.0 * pad).recip(), pad }
     }
 

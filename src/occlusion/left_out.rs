@@ -43,7 +43,8 @@ impl LeftOut {
     #[must_use]
     pub fn new(opaque: u32, mailbox: bool) -> Self {
         let slots = mailbox.then(|| Box::new([Slot::default(); SLOTS]));
-        Self { opaque, spawner: NOBODY, cell: Cell::default(), ray: 0, slots }
+        // Slots are empty, which is triangle 0 by ray 0.
+        Self { opaque, spawner: NOBODY, cell: Cell::default(), ray: 1, slots }
     }
 
     /// Begins a query: all triangles count again, but `spawner`, if one is named.
@@ -126,9 +127,14 @@ mod tests {
     }
 
     #[test]
+    fn nothing_is_left_out_before_the_first_query() {
+        let left_out = LeftOut::new(1000, true);
+        assert!((0..1000).all(|id| !left_out.holds(id)));
+    }
+
+    #[test]
     fn numbers_that_wrap_around_do_not_name_old_rays() {
         let mut left_out = LeftOut::new(1000, true);
-        left_out.begin(None);
         left_out.note(7);
         left_out.ray = u32::MAX;
         left_out.note(8);

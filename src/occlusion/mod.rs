@@ -64,13 +64,28 @@ pub struct Cell {
     pub end: u32,
 }
 
+impl Cell {
+    /// What a culler shows a visitor instead of a cell that is no run of its order. No cell holds it, so that a mailbox
+    /// never takes it for tested.
+    const NOWHERE: Self = Self { start: 0, end: u32::MAX };
+}
+
 /// A triangle that blocks a ray, and the cell it was met in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Occluder {
     /// The triangle.
     pub triangle: TriangleId,
-    /// Its neighbourhood; empty where the backend's cells are not there yet ([`Occlusion::has_cells`]).
+    /// Its neighbourhood; empty where it has none that could be tested again: where the backend's cells are not there yet
+    /// ([`Occlusion::has_cells`]), and in the crowded voxels of a [`DividedGrid`].
     pub cell: Cell,
+}
+
+impl Occluder {
+    /// Met in what a culler showed as this cell.
+    #[inline(always)]
+    fn shown(triangle: TriangleId, cell: Cell) -> Self {
+        Self { triangle, cell: if cell == Cell::NOWHERE { Cell::default() } else { cell } }
+    }
 }
 
 /// Answers occlusion queries about one set of triangles.
@@ -124,14 +139,16 @@ pub trait Occlusion: Any + Send + Sync {
         })
     }
 
-    /// Whether the ray meets this one triangle.
+    /// Whether the ray meets this one triangle. Over Embree, which cannot be asked that, whether it surely does: the lower bound of
+    /// its own answer.
     fn meets(&self, triangle: TriangleId, ray: &Ray, tally: &mut Tally) -> bool;
 
     /// All transparent triangles that the ray meets, each once, in ascending order.
     fn transparent(&self, ray: &Ray, found: &mut Vec<TriangleId>, tally: &mut Tally);
 
     /// The triangle the ray meets first, by distances in f64: of those that differ by less than rounding, as at a shared edge, any may be
-    /// first, the same over every backend of ours; of several at the same distance it is the one with the least id.
+    /// first, the same over every backend of ours; of several at the same distance it is the one with the least id. Embree itself
+    /// says which is first, by distances in f32.
     fn nearest(&self, ray: &Ray, tally: &mut Tally) -> Option<Nearest>;
 
     /// The triangles in an order that keeps each cell together; a triangle may recur.

@@ -69,7 +69,7 @@ impl<T: TriangleTest, L: Lanes> SparingVisitor<'_, T, L> {
         let Self { triangles, ray, lanes, left_out, tally, found, .. } = self;
         let wanted = |_| true;
         test_each::<T, L>(triangles, ray, lanes, ids, tally, wanted, |triangle| {
-            *found = Some(Occluder { triangle, cell });
+            *found = Some(Occluder::shown(triangle, cell));
             ControlFlow::Break(())
         })?;
         ids.iter().for_each(|&id| left_out.note(id));

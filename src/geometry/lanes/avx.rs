@@ -1,8 +1,8 @@
 //! Eight lanes: AVX2 with FMA, and AVX-512 VL, which differs from it in the reciprocal, and has
 //! sixteen at once as well.
 //!
-//! Every `unsafe` here has one reason. SAFETY: [`Avx`] exists in this crate only inside functions
-//! compiled with the instruction set, which run only where `Available` found it.
+//! Every `unsafe` here has one reason. SAFETY: code that has lanes of this kind is reached only through
+//! `Available`, which has found the instruction set on this CPU.
 
 use std::arch::x86_64::*;
 

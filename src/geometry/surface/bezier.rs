@@ -139,6 +139,11 @@ fn piece(t: f64, count: usize) -> (usize, f64) {
     (index, scaled - index as f64)
 }
 
+/// Whether rows are equally long.
+fn are_alike(rows: &[Vec<DVec3>]) -> bool {
+    rows.iter().all(|row| row.len() == rows[0].len())
+}
+
 /// How far from a pole of a body its normal is taken.
 const BESIDE_POLE: f64 = 1e-5;
 
@@ -158,10 +163,11 @@ impl Sheet {
     /// The sheet through rows of points of equal length: u along a row, v from row to row.
     ///
     /// # Panics
-    /// With fewer than two rows or columns.
+    /// With fewer than two rows or columns, or rows that differ in length.
     #[must_use]
     pub fn through(rows: &[Vec<DVec3>]) -> Self {
         assert!(rows.len() > 1 && rows[0].len() > 1, "a sheet needs two rows and two columns");
+        assert!(are_alike(rows), "rows of a sheet are equally long");
         let rows: Vec<_> =
             rows.iter().map(|row| Path::through(row, None, None).controls()).collect();
         Self::along_columns(&rows, false)
@@ -171,11 +177,15 @@ impl Sheet {
     /// counter-clockwise as seen from the last point and have an even number of points each.
     ///
     /// # Panics
-    /// Without a loop, or with an odd one.
+    /// Without a loop, with an odd or an empty one, or with loops that differ in length.
     #[must_use]
     pub fn body(first: DVec3, loops: &[Vec<DVec3>], last: DVec3) -> Self {
         let points = loops[0].len();
-        assert!(points.is_multiple_of(2), "every point of a loop needs an opposite one");
+        assert!(
+            points > 0 && points.is_multiple_of(2),
+            "every point of a loop needs an opposite one"
+        );
+        assert!(are_alike(loops), "loops of a body are equally long");
         let controls = 3 * points + 1;
         let mut rows = vec![vec![first; controls]];
         for around in loops {

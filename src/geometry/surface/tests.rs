@@ -222,3 +222,18 @@ fn the_deviation_of_a_ball_is_that_of_its_chords() {
     );
     assert!((larger.greatest / round.greatest - 3.0).abs() < 1e-9, "{larger:?}");
 }
+
+#[test]
+#[should_panic(expected = "rows of a sheet are equally long")]
+fn a_sheet_of_rows_of_different_length_is_refused() {
+    // What a longer row had more was left out without a word.
+    let row = |points: u32| (0..points).map(|x| DVec3::new(f64::from(x), 0.0, 0.0)).collect();
+    let _ = Sheet::through(&[row(3), row(4)]);
+}
+
+#[test]
+#[should_panic(expected = "loops of a body are equally long")]
+fn a_body_of_loops_of_different_length_is_refused() {
+    let ring = |points: u32| (0..points).map(|x| DVec3::new(f64::from(x), 1.0, 0.0)).collect();
+    let _ = Sheet::body(DVec3::ZERO, &[ring(4), ring(6)], DVec3::Y);
+}

@@ -36,10 +36,6 @@ const CROWDED: usize = 16;
 /// A divided voxel with more triangles than this is not remembered: testing all would cost more than a walk.
 const MOST_REMEMBERED: u32 = 64;
 
-/// What is named instead: a cell that no order has, so that a memory takes it for none, and that no cell
-/// holds, so that a mailbox never takes it for tested.
-const NO_CELL: Cell = Cell { start: 0, end: u32::MAX };
-
 /// The grid of a crowded voxel, when it is known whether dividing it gains anything.
 type Inside = OnceLock<Option<Box<NestedGrid>>>;
 
@@ -183,7 +179,11 @@ struct Parts<'v, V: ?Sized> {
 impl<'v, V: Visit + ?Sized> Parts<'v, V> {
     fn of(cell: Cell, visitor: &'v mut V) -> Self {
         let few = cell.end - cell.start <= MOST_REMEMBERED;
-        Self { cell: if few { cell } else { NO_CELL }, visitor, visited: ControlFlow::Continue(()) }
+        Self {
+            cell: if few { cell } else { Cell::NOWHERE },
+            visitor,
+            visited: ControlFlow::Continue(()),
+        }
     }
 }
 
@@ -203,5 +203,10 @@ impl<V: Visit + ?Sized> Visit for Parts<'_, V> {
     #[inline(always)]
     fn end(&self) -> f32 {
         self.visitor.end()
+    }
+
+    #[inline(always)]
+    fn is_ordered(&self) -> bool {
+        self.visitor.is_ordered()
     }
 }

@@ -52,7 +52,7 @@ const NESTED_DENSITY: f64 = 0.5;
 /// on each other there would be more, and the grid is made coarser until there are not.
 const MOST_ENTRIES: usize = 64;
 
-/// Entries of a grid whose resolution is asked for: they take 4 GiB.
+/// Entries of a grid whose resolution is asked for: they take 4 GiB. There are always as many as triangles.
 const MOST_ENTRIES_ASKED: u32 = 1 << 30;
 
 /// Most voxels along one axis.
@@ -66,13 +66,14 @@ const MOST_VOXELS_ASKED: u64 = 1 << 27;
 pub struct GridOptions {
     /// Voxels along x, y and z of the outermost grid, 1 to 1024 each and at most 2²⁷ in all; if none are given, what suits
     /// the triangles. Each takes 4 bytes, and 8 while the grid is built, and 4 more for every triangle that lies in it:
-    /// at most 2³⁰ of these in all, which are 4 GiB.
+    /// at most 2³⁰ of these in all, which are 4 GiB, or as many as triangles.
     pub resolution: Option<[u32; 3]>,
     /// Whether crowded voxels are divided.
     pub nested: bool,
     /// Whether they are so only when a ray first comes to them.
     pub lazy: bool,
-    /// Bytes beyond which none is divided any more when a ray comes to it.
+    /// Bytes beyond which none is divided any more when a ray comes to it; where none is divided anyway, those that a grid
+    /// of the resolution that is asked for must not exceed.
     pub most_bytes: Option<u64>,
 }
 
@@ -95,6 +96,19 @@ impl GridOptions {
             return Ok(());
         }
         Err(GridError::Resolution { resolution })
+    }
+
+    /// Entries that a grid of the resolution that is asked for may have.
+    fn most_entries(&self, triangles: usize, voxels: usize) -> u32 {
+        // One voxel, which lists each triangle once, is never too fine.
+        let most = MOST_ENTRIES_ASKED.max(u32::try_from(triangles).unwrap_or(u32::MAX));
+        match self.most_bytes.filter(|_| !self.nested) {
+            None => most,
+            Some(bytes) => {
+                let places = (bytes / size_of::<u32>() as u64).saturating_sub(voxels as u64);
+                most.min(u32::try_from(places).unwrap_or(u32::MAX))
+            }
+        }
     }
 
     /// A plain uniform grid of about so many voxels, as near to cubes as the box of the triangles allows; never more than may be
@@ -121,6 +135,16 @@ pub struct TooFine {
     pub entries: u64,
     /// Entries that there may be.
     pub most: u32,
+}
+
+impl TooFine {
+    /// Bytes that the grid would take, at least.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let voxels: u64 = self.resolution.map(u64::from).iter().product();
+        // One list has a start and an end.
+        size_of::<u32>() as u64 * (voxels + 2 + self.entries)
+    }
 }
 
 /// Why there is no grid of the resolution that was asked for.
@@ -156,7 +180,7 @@ impl Grid {
     /// many voxels or entries, it is coarser than asked for.
     #[must_use]
     pub fn new(triangles: &Triangles, options: GridOptions) -> Self {
-        let mut options = options;
+        let mut options = GridOptions { most_bytes: None, ..options };
         loop {
             match Self::of_resolution(triangles, options) {
                 Ok(grid) => return grid,
@@ -171,14 +195,15 @@ impl Grid {
     /// The same, but a resolution that is asked for is kept: 4 bytes a voxel, and 8 while it is built.
     ///
     /// # Errors
-    /// If there would be too many voxels or entries.
+    /// If there would be too many voxels or entries, or more bytes than there may be.
     pub fn of_resolution(triangles: &Triangles, options: GridOptions) -> Result<Self, GridError> {
         options.check()?;
         let density = if options.nested { NESTED_DENSITY } else { UNIFORM_DENSITY };
         match options.resolution {
             Some(_) => {
                 let level = Self::place(triangles, options.resolution, density);
-                Ok(build::build(triangles, level, MOST_ENTRIES_ASKED)?)
+                let most = options.most_entries(triangles.len(), level.voxel_count());
+                Ok(build::build(triangles, level, most)?)
             }
             None => {
                 let most = most_entries(triangles.len());
@@ -214,9 +239,8 @@ impl Grid {
     /// Where a grid is, of the given resolution or with `density` voxels to a triangle.
     fn place(triangles: &Triangles, resolution: Option<[u32; 3]>, density: f64) -> Level {
         let bounds = triangles.bounds().unwrap_or_default();
-        let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
         // A flat scene gets a box with some depth, so that a voxel has a volume.
-        let thickness = padding(&bounds, extent.max_element() * PADDING / MOST_VOXELS);
+        let thickness = padding(&bounds, 0.0);
         let (min, max) = (bounds.min.as_dvec3() - thickness, bounds.max.as_dvec3() + thickness);
         let resolution = match resolution {
             Some(resolution) => resolution.map(|n| n.clamp(1, MOST_VOXELS as u32)),
@@ -320,12 +344,55 @@ fn resolution(extent: DVec3, voxels: f64) -> [u32; 3] {
     // Thin boxes count as this thick, so that voxels stay near cubes.
     let extent = extent.max(DVec3::splat(extent.max_element() / MOST_VOXELS));
     let per_length = (voxels / extent.element_product()).cbrt();
-    (extent * per_length).to_array().map(|n| n.ceil().clamp(1.0, MOST_VOXELS) as u32)
+    // A point has no extent, and what is NaN then only `max` takes to a number.
+    (extent * per_length).to_array().map(|n| n.ceil().clamp(1.0, MOST_VOXELS).max(1.0) as u32)
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
+
+    #[test]
+    fn one_voxel_is_never_too_fine_however_many_triangles_there_are() {
+        let options = GridOptions { nested: false, ..GridOptions::default() };
+        assert_eq!(options.most_entries(1000, 1), MOST_ENTRIES_ASKED);
+        for triangles in [MOST_ENTRIES_ASKED as usize + 1, u32::MAX as usize] {
+            assert_eq!(options.most_entries(triangles, 1), triangles as u32);
+        }
+    }
+
+    #[test]
+    fn a_uniform_grid_is_refused_before_it_takes_more_bytes_than_it_may() {
+        let sheet = [Vec3::ZERO, Vec3::new(8.0, 0.0, 0.0), Vec3::new(0.0, 8.0, 0.0)];
+        let triangles = Triangles::from_iter(vec![sheet; 1000]);
+        let options = GridOptions::uniform(&triangles, 4096);
+        let bytes = Grid::of_resolution(&triangles, options).unwrap().memory() as u64;
+        let within = |most| {
+            Grid::of_resolution(&triangles, GridOptions { most_bytes: Some(most), ..options })
+        };
+        assert_eq!(within(bytes).unwrap().memory() as u64, bytes);
+        let Err(GridError::TooFine(refused)) = within(bytes / 2) else { panic!("not refused") };
+        assert!(u64::from(refused.most) * 4 <= bytes / 2, "{refused:?}");
+        assert!((bytes / 2..=bytes).contains(&refused.bytes()), "{refused:?} {bytes}");
+        // Who asks for any grid gets one.
+        let coarse = Grid::new(&triangles, GridOptions { most_bytes: Some(0), ..options });
+        assert_eq!(coarse.memory() as u64, bytes);
+    }
+
+    #[test]
+    fn a_grid_of_nothing_or_of_one_point_has_a_voxel() {
+        for triangles in [vec![], vec![[Vec3::ONE; 3]; 5], vec![[Vec3::NAN; 3]; 2]] {
+            let triangles = Triangles::from_iter(triangles);
+            for voxels in [0, 1, 1000, usize::MAX] {
+                let options = GridOptions::uniform(&triangles, voxels);
+                let resolution = options.resolution.unwrap();
+                assert!(resolution.iter().all(|&n| n >= 1), "{resolution:?}");
+                assert!(Grid::of_resolution(&triangles, options).is_ok(), "{resolution:?}");
+            }
+        }
+    }
 
     #[test]
     fn entries_are_never_more_than_there_are_places_for() {

@@ -13,9 +13,11 @@
 //! A plane's normal n is a cross product, of which X is the same of magnitudes; its inputs are differences, so it errs by at
 //! most 4u X. Its value at C is n·g, where g is the way to C from a point on the plane: that errs by 4u X·|g| + 4u |n|·|g|.
 //! Both are scaled, and evaluated at p or at the middle of a box: 7u |n|·h for the products (p or the middle 2u, the
-//! normal 1, product and sums 4), 4u |n·g| for the value. With w = |g| + h that is less than 4u (X·w + 1.75 |n|·w + |n·g|) in all.
-//! The rays' direction is fl(L − P), off by ρ with |ρ| ≤ u|q|: that moves an edge's volume by q·((a−b)×ρ), at most
-//! 2u E |q|₁ |q|∞ with E the longest coordinate of an edge, and the end of the ray by N·ρ. What underflows is below [`LEAST`].
+//! normal 1, product and sums 4), 4u |n·g| for the value. With w = |g| + h, and u |n|·w for the direction of the ray (below), that is
+//! less than 4u (X·w + 2 |n|·w + |n·g|) in all.
+//! The rays' direction is fl(L − P), off by ρ with |ρ| ≤ u|q|: that moves an edge's volume by ρ·(a×b) and by q·((a−b)×ρ), and the
+//! end of the ray by N·ρ. The first is at most u|n|·w, the second 2u E |q|₁ |q|∞ with E the longest coordinate of an edge.
+//! What underflows is below [`LEAST`].
 //!
 //! Each plane is divided by its bound: beyond 1 it is certain, below −1 too, and what lies between is open and
 //! left to the exact test.
@@ -33,8 +35,8 @@ const ROUNDING: f32 = 1.0 / (1u32 << 24) as f32;
 /// 4u, and a little for what is of second order, and for the rounding of bounds themselves.
 const FOUR: f32 = 4.2 * ROUNDING;
 
-/// 7u of 4u: what the normal's own magnitude counts in a bound, for the products with an origin.
-const SEVEN_OF_FOUR: f32 = 1.75;
+/// 8u of 4u: what the normal's own magnitude counts in a bound, for the products with an origin and the ray's direction.
+const EIGHT_OF_FOUR: f32 = 2.0;
 
 /// Added to all bounds: products underflow below 2⁻¹²⁶.
 const LEAST: f32 = 1e-30;
@@ -123,7 +125,7 @@ impl<L: Lanes> Plane<L> {
         let crossed = cross_of_magnitudes(a, b);
         let mut terms = crossed;
         for (terms, normal) in terms.iter_mut().zip(magnitudes(normal)) {
-            *terms = L::splat(SEVEN_OF_FOUR).mul_add(normal, *terms);
+            *terms = L::splat(EIGHT_OF_FOUR).mul_add(normal, *terms);
         }
         let error = L::splat(FOUR).mul(lanes::dot(terms, reach).add(value.abs()));
         Self { normal, magnitudes: crossed, value, error: error.add(L::splat(LEAST)) }

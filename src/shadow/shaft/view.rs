@@ -11,7 +11,10 @@
 //! the triangle's own plane: that is asked of the box.
 //!
 //! **Rounding.** A ratio errs by 3u of at most [`WIDEST`], and the corners of the base by some u of their distance from the
-//! light and of the light's from the centre: [`PAD`] of both is added all around.
+//! light and of the light's from the centre: [`PAD`] of both is added all around. That also covers what a shaft makes of the base
+//! (`frustum`), which counts in the largest coordinate M, while a base is up to 5 M out: twice as far across as it is deep, which is up
+//! to 2 M, from a light that is up to M out. Moving it and taking its sides are 5 roundings of its corners, 10 of both
+//! distances at most.
 //!
 //! The octahedral map of directions, unfolded: Meyer, Süßmuth, Sußner, Stamminger, Greiner: On Floating-Point Normal Vectors.
 //! Computer Graphics Forum 29(4), 2010.

@@ -34,7 +34,8 @@ const _: () = assert!(FEW <= SLOTS);
 /// A part of a scene with at most so many triangles, two vectors full, gains nothing by a grid of its own.
 const LEAST_DIVIDED: usize = 16;
 
-/// Triangles to a voxel of a grid, and voxels at most: half of what there are bits for, so that there is room for eights.
+/// Triangles to a voxel of a grid, and the voxels that it gets if there are triangles enough: half of what there are bits for,
+/// so that there is room for eights. It may get a few more, for they are counted along axes: 36 at most.
 const PER_VOXEL: usize = 6;
 pub(super) const MOST_VOXELS: usize = SLOTS / 2;
 
@@ -322,6 +323,11 @@ impl<'a> Sorter<'a> {
             grid.groups.resize(grid.outermost, Group::EMPTY);
             self.put(root, 0, &mut grid);
         }
+        // Places are told in 32 bits, and so are numbers of groups, of which there are fewer.
+        assert!(
+            u32::try_from(grid.order.len()).is_ok(),
+            "too many triangles for places in 32 bits"
+        );
         grid.nodes.shrink_to_fit();
         grid.groups.shrink_to_fit();
         grid.order.shrink_to_fit();

@@ -25,7 +25,10 @@
 //! | corners of the triangle, in the cube | 1 u |
 //! | planes of a box: corner of the part, padding added twice | 4 u |
 //!
-//! Together 19 u < 2⁻¹⁹ = 32 u = [`MISPLACED`].
+//! Together 19 u < 2⁻¹⁹ = 32 u = [`MISPLACED`]. So it is where the slack is little beside the cube. It may be as long as the side, of a speck far
+//! from where coordinates are zero: then places and planes are up to 2 and distances up to 2.5, which makes 26 u. In cubes of
+//! more than 8.5e37 the scale is denormal and errs by up to 8 u: by 5 u more of a place, as it is the same for origin and
+//! direction, and by 24 u in all.
 //!
 //! Jevans, Wyvill: Adaptive Voxel Subdivision for Ray Tracing. Graphics Interface 1989.
 //! Ulrich: Loose Octrees. Game Programming Gems, 2000.
