@@ -1,8 +1,12 @@
 //! Polygons become triangles.
 
+mod tree;
+
 use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
+
+use tree::Corners;
 
 /// Cuts a polygon into triangles: a fan from its first corner where that covers the polygon and
 /// nothing else, as for every convex one; else by cutting off ears. The outline may touch itself, or run back along
@@ -65,7 +69,7 @@ struct Outline<'a> {
     is_left: Vec<bool>,
     count: usize,
     /// The corners at which the outline does not turn left: where anything is in an ear, one of these is.
-    reflex: Vec<usize>,
+    reflex: Corners<'a>,
     /// The corners that can be cut off.
     ears: BTreeSet<usize>,
 }
@@ -79,7 +83,7 @@ impl<'a> Outline<'a> {
             after: (0..count).map(|corner| (corner + 1) % count).collect(),
             is_left: vec![true; count],
             count,
-            reflex: Vec::new(),
+            reflex: Corners::of(flat),
             ears: BTreeSet::new(),
         };
         outline.settle((0..count).collect());
@@ -141,6 +145,7 @@ impl<'a> Outline<'a> {
         self.is_left[corner] = false;
         self.count -= 1;
         self.ears.remove(&corner);
+        self.reflex.remove(corner);
         [before, after]
     }
 
@@ -157,12 +162,14 @@ impl<'a> Outline<'a> {
         }
         touched.sort_unstable();
         touched.dedup();
-        self.reflex
-            .retain(|corner| self.is_left[*corner] && touched.binary_search(corner).is_err());
         touched.retain(|&corner| self.is_left[corner]);
-        let bent = touched.iter().copied().filter(|&corner| self.turn_at(corner) <= 0.0);
-        let bent: Vec<usize> = bent.collect();
-        self.reflex.extend(bent);
+        for &corner in &touched {
+            if self.turn_at(corner) <= 0.0 {
+                self.reflex.insert(corner);
+            } else {
+                self.reflex.remove(corner);
+            }
+        }
         for corner in touched {
             if self.is_ear(corner, false) {
                 self.ears.insert(corner);
@@ -178,8 +185,8 @@ impl<'a> Outline<'a> {
         let around = self.around(corner);
         let triangle = around.map(|i| self.flat[i]);
         turn(triangle) > 0.0
-            && !self.reflex.iter().any(|other| {
-                !around.contains(other) && self.is_in_the_way(*other, triangle, touched)
+            && !self.reflex.any_near(triangle, &|other| {
+                !around.contains(&other) && self.is_in_the_way(other, triangle, touched)
             })
     }
 

@@ -107,6 +107,21 @@ fn the_work_grows_with_the_square_of_the_corners_at_most() {
     assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
 }
 
+/// A comb with its back below: at half of its corners it turns right, but beside each ear there are few of them.
+#[test]
+fn the_work_grows_little_faster_than_the_corners_of_a_long_outline() {
+    let comb = |teeth: usize| {
+        let (first, last) = ([0.0, -1.0], [2.0 * teeth as f64, -1.0]);
+        // The last corner of the edge is a low one, so that ears reach from one end of the comb to the other.
+        let edge = (0..2 * teeth - 1).rev().map(|at| [at as f64, (at % 2) as f64]);
+        polygon(&[first, last].into_iter().chain(edge).collect::<Vec<_>>())
+    };
+    let start = Instant::now();
+    assert_eq!(triangulate(&comb(60_000)).len(), 119_999);
+    // It takes a fraction of a second; looking at all corners that turn right for every ear took minutes.
+    assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+}
+
 /// Unit steps, counter-clockwise.
 const STEPS: [IVec2; 4] = [IVec2::X, IVec2::Y, IVec2::NEG_X, IVec2::NEG_Y];
 
