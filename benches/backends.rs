@@ -59,7 +59,7 @@ fn shadow_rays(scene: &Scene) -> Vec<Ray> {
     let settings = Settings { width: 160, height: 120, record: true, ..Settings::default() };
     let recorded =
         render(scene, &*backend, &Trace::new(&*backend), &settings, &Progress::default());
-    let queries = recorded.expect("the settings are good").queries;
+    let queries = recorded.expect("the settings are good").queries.concat();
     let step = (queries.len() / RAYS).max(1);
     // Whole tiles, spread over the picture: neighbours stay together.
     let tiles: Vec<_> = queries.chunks(256).step_by(step).flatten().collect();

@@ -33,6 +33,7 @@ fn shadow_queries(scene: &Scene) -> Vec<RecordedQuery> {
     render(scene, &*backend, &Trace::new(&*backend), &settings, &Progress::default())
         .unwrap()
         .queries
+        .concat()
 }
 
 fn embree(triangles: &Arc<Triangles>, robust: bool, options: EmbreeOptions) -> Embree {

@@ -37,7 +37,7 @@ fn recording_of(rays: &[Ray]) -> Recording {
         pixel: (pixel, 0),
         blocked: false,
     });
-    Recording::new(rays.len() as u32, 1, queries.collect())
+    Recording::new(rays.len() as u32, 1, vec![queries.collect()])
 }
 
 /// Rays of every kind, most of them hard.

@@ -5,7 +5,7 @@ use umbra::occlusion::{Occlusion, Tally};
 use umbra::render::RecordedQuery;
 use umbra::shadow::{Answer, ShadowQuery, Shadows};
 
-/// Queries about one light that follow each other.
+/// Queries about one light that the renderer asks at once.
 pub struct Run {
     pub light: usize,
     pub queries: Vec<ShadowQuery>,
@@ -14,9 +14,9 @@ pub struct Run {
 }
 
 impl Run {
-    /// What was recorded, cut where the light changes.
+    /// What was recorded of a unit, cut where light or generation change.
     pub fn all(recorded: &[RecordedQuery]) -> Vec<Self> {
-        let runs = recorded.chunk_by(|a, b| a.light == b.light).map(|run| {
+        let runs = recorded.chunk_by(RecordedQuery::is_asked_with).map(|run| {
             let queries: Vec<ShadowQuery> = run.iter().map(|recorded| recorded.query).collect();
             let rays = queries.iter().map(|query| query.ray).collect();
             Self { light: run[0].light as usize, queries, rays }

@@ -171,6 +171,9 @@ void rtcCommitGeometry(RTCGeometry geometry);
 void rtcSetGeometryMask(RTCGeometry geometry, unsigned int mask);
 void* rtcSetNewGeometryBuffer(RTCGeometry geometry, enum RTCBufferType type, unsigned int slot, enum RTCFormat format,
                               size_t byteStride, size_t itemCount);
+void rtcSetSharedGeometryBuffer(RTCGeometry geometry, enum RTCBufferType type, unsigned int slot, enum RTCFormat format,
+                                const void* ptr, size_t byteOffset, size_t byteStride, size_t itemCount);
+void rtcSetGeometryBuildQuality(RTCGeometry geometry, enum RTCBuildQuality quality);
 
 /* Scenes. */
 

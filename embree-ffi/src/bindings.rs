@@ -699,6 +699,20 @@ pub struct Embree {
         byteStride: usize,
         itemCount: usize,
     ) -> *mut ::core::ffi::c_void,
+    pub rtcSetSharedGeometryBuffer: unsafe extern "C" fn(
+        geometry: RTCGeometry,
+        type_: RTCBufferType,
+        slot: ::core::ffi::c_uint,
+        format: RTCFormat,
+        ptr: *const ::core::ffi::c_void,
+        byteOffset: usize,
+        byteStride: usize,
+        itemCount: usize,
+    ),
+    pub rtcSetGeometryBuildQuality: unsafe extern "C" fn(
+        geometry: RTCGeometry,
+        quality: RTCBuildQuality,
+    ),
     pub rtcNewScene: unsafe extern "C" fn(device: RTCDevice) -> RTCScene,
     pub rtcReleaseScene: unsafe extern "C" fn(scene: RTCScene),
     pub rtcAttachGeometry: unsafe extern "C" fn(
@@ -786,6 +800,14 @@ impl Embree {
             __library.get(b"rtcSetNewGeometryBuffer\0")
         }
             .map(|sym| *sym)?;
+        let rtcSetSharedGeometryBuffer = unsafe {
+            __library.get(b"rtcSetSharedGeometryBuffer\0")
+        }
+            .map(|sym| *sym)?;
+        let rtcSetGeometryBuildQuality = unsafe {
+            __library.get(b"rtcSetGeometryBuildQuality\0")
+        }
+            .map(|sym| *sym)?;
         let rtcNewScene = unsafe { __library.get(b"rtcNewScene\0") }.map(|sym| *sym)?;
         let rtcReleaseScene = unsafe { __library.get(b"rtcReleaseScene\0") }
             .map(|sym| *sym)?;
@@ -823,6 +845,8 @@ impl Embree {
             rtcCommitGeometry,
             rtcSetGeometryMask,
             rtcSetNewGeometryBuffer,
+            rtcSetSharedGeometryBuffer,
+            rtcSetGeometryBuildQuality,
             rtcNewScene,
             rtcReleaseScene,
             rtcAttachGeometry,
@@ -911,6 +935,38 @@ impl Embree {
                 itemCount,
             )
         }
+    }
+    pub unsafe fn rtcSetSharedGeometryBuffer(
+        &self,
+        geometry: RTCGeometry,
+        type_: RTCBufferType,
+        slot: ::core::ffi::c_uint,
+        format: RTCFormat,
+        ptr: *const ::core::ffi::c_void,
+        byteOffset: usize,
+        byteStride: usize,
+        itemCount: usize,
+    ) {
+        unsafe {
+            (self
+                .rtcSetSharedGeometryBuffer)(
+                geometry,
+                type_,
+                slot,
+                format,
+                ptr,
+                byteOffset,
+                byteStride,
+                itemCount,
+            )
+        }
+    }
+    pub unsafe fn rtcSetGeometryBuildQuality(
+        &self,
+        geometry: RTCGeometry,
+        quality: RTCBuildQuality,
+    ) {
+        unsafe { (self.rtcSetGeometryBuildQuality)(geometry, quality) }
     }
     pub unsafe fn rtcNewScene(&self, device: RTCDevice) -> RTCScene {
         unsafe { (self.rtcNewScene)(device) }

@@ -1,6 +1,9 @@
 //! Building a scene of triangle meshes.
 
-use std::{ffi::c_void, fmt, num::NonZeroU32, ops::ControlFlow, panic::resume_unwind, ptr};
+use std::{
+    any::Any, ffi::c_void, fmt, num::NonZeroU32, ops::ControlFlow, panic::resume_unwind, ptr,
+    sync::Arc,
+};
 
 use crate::{
     Device, Error,
@@ -14,13 +17,23 @@ use crate::{
 /// How much work goes into the acceleration structure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum BuildQuality {
-    /// One tree per mesh under a top tree: quick to build, larger, slower to query.
+    /// Along Morton's curve, one tree per mesh: built in a quarter of the time, slower to query.
     Low,
     /// A surface-area heuristic.
     #[default]
     Medium,
     /// With spatial splits, unless the scene is robust or compact. A filter may then be asked twice about one triangle.
     High,
+}
+
+impl BuildQuality {
+    fn raw(self) -> RTCBuildQuality {
+        match self {
+            Self::Low => RTCBuildQuality::RTC_BUILD_QUALITY_LOW,
+            Self::Medium => RTCBuildQuality::RTC_BUILD_QUALITY_MEDIUM,
+            Self::High => RTCBuildQuality::RTC_BUILD_QUALITY_HIGH,
+        }
+    }
 }
 
 /// How a scene is to be built.
@@ -128,12 +141,8 @@ impl SceneBuilder {
         if raw.is_null() {
             return Err(unexplained(device));
         }
-        let owner = SceneOwner { raw, device: device.clone() };
-        let quality = match options.quality {
-            BuildQuality::Low => RTCBuildQuality::RTC_BUILD_QUALITY_LOW,
-            BuildQuality::Medium => RTCBuildQuality::RTC_BUILD_QUALITY_MEDIUM,
-            BuildQuality::High => RTCBuildQuality::RTC_BUILD_QUALITY_HIGH,
-        };
+        let owner = SceneOwner { raw, device: device.clone(), kept: Vec::new() };
+        let quality = options.quality.raw();
         // SAFETY: the scene is alive and ours alone.
         unsafe {
             api.rtcSetSceneFlags(raw, options.flags());
@@ -151,31 +160,80 @@ impl SceneBuilder {
     /// If the mesh is too large or names a vertex that it does not have, or memory does not suffice.
     pub fn add(&mut self, mesh: Mesh) -> Result<u32, Error> {
         mesh.check()?;
-        let device = &self.owner.device;
-        let api = &device.library().api;
-        // SAFETY: the device is alive.
-        let raw = unsafe {
-            api.rtcNewGeometry(device.raw(), RTCGeometryType::RTC_GEOMETRY_TYPE_TRIANGLE)
-        };
-        if raw.is_null() {
-            return Err(unexplained(device));
+        let geometry = self.geometry()?;
+        geometry.fill(VERTICES, RTCFormat::RTC_FORMAT_FLOAT3, mesh.vertices)?;
+        geometry.fill(INDICES, RTCFormat::RTC_FORMAT_UINT3, mesh.triangles)?;
+        let mask = mesh.mask;
+        self.attach(&geometry, mask)
+    }
+
+    /// Adds triangles whose corners, three each in a row, Embree reads where they lie. Its number is how many were added before.
+    ///
+    /// A corner begins with three coordinates, and takes 16 bytes, as Embree's vector loads need. The scene keeps `owner`
+    /// until it is gone.
+    ///
+    /// # Errors
+    /// If there are too many corners, or memory does not suffice.
+    ///
+    /// # Safety
+    /// As long as a clone of `owner` lives, the corners must stay in their place, unchanged.
+    pub unsafe fn add_in_place<Corner>(
+        &mut self,
+        corners: &[[Corner; 3]],
+        mask: NonZeroU32,
+        owner: Arc<dyn Any + Send + Sync>,
+    ) -> Result<u32, Error> {
+        const { assert!(size_of::<Corner>() == 16 && align_of::<Corner>().is_multiple_of(4)) };
+        let count = 3 * corners.len();
+        if count >= u32::MAX as usize {
+            return Err(Error::TooMany { what: "vertices", count });
         }
-        let geometry = GeometryOwner { api, raw };
-        geometry.fill(
-            RTCBufferType::RTC_BUFFER_TYPE_VERTEX,
-            RTCFormat::RTC_FORMAT_FLOAT3,
-            mesh.vertices,
-            device,
-        )?;
-        geometry.fill(
-            RTCBufferType::RTC_BUFFER_TYPE_INDEX,
-            RTCFormat::RTC_FORMAT_UINT3,
-            mesh.triangles,
-            device,
-        )?;
+        let geometry = self.geometry()?;
+        if count > 0 {
+            self.owner.kept.push(owner);
+            let format = RTCFormat::RTC_FORMAT_FLOAT3;
+            // SAFETY: the geometry is alive. The corners are of that size and number, and stay there, as the caller promises,
+            // while `kept` keeps their owner: until after the scene is gone.
+            unsafe {
+                let corners = corners.as_ptr().cast();
+                let api = &self.owner.device.library().api;
+                api.rtcSetSharedGeometryBuffer(
+                    geometry.raw,
+                    VERTICES,
+                    0,
+                    format,
+                    corners,
+                    0,
+                    16,
+                    count,
+                );
+            }
+        }
+        let own = |triangle| [3 * triangle, 3 * triangle + 1, 3 * triangle + 2];
+        let indices: Vec<[u32; 3]> = (0..corners.len() as u32).map(own).collect();
+        geometry.fill(INDICES, RTCFormat::RTC_FORMAT_UINT3, &indices)?;
+        self.attach(&geometry, mask.get())
+    }
+
+    fn geometry(&self) -> Result<GeometryOwner, Error> {
+        let device = self.owner.device.clone();
+        let kind = RTCGeometryType::RTC_GEOMETRY_TYPE_TRIANGLE;
+        // SAFETY: the device is alive.
+        let raw = unsafe { device.library().api.rtcNewGeometry(device.raw(), kind) };
+        if raw.is_null() {
+            return Err(unexplained(&device));
+        }
+        Ok(GeometryOwner { raw, device })
+    }
+
+    fn attach(&self, geometry: &GeometryOwner, mask: u32) -> Result<u32, Error> {
+        let device = &self.owner.device;
+        let (api, raw) = (&device.library().api, geometry.raw);
         // SAFETY: scene and geometry are alive and ours alone. The scene keeps a reference of its own.
         let id = unsafe {
-            api.rtcSetGeometryMask(raw, mesh.mask);
+            api.rtcSetGeometryMask(raw, mask);
+            // What is built quickly is the geometry's tree: a scene of low quality has one for each.
+            api.rtcSetGeometryBuildQuality(raw, self.options.quality.raw());
             api.rtcCommitGeometry(raw);
             api.rtcAttachGeometry(self.owner.raw, raw)
         };
@@ -275,6 +333,8 @@ impl Scene {
 struct SceneOwner {
     raw: RTCScene,
     device: Device,
+    /// Who owns what its geometries read in place; dropped after the scene, which our own [`Drop`] releases first.
+    kept: Vec<Arc<dyn Any + Send + Sync>>,
 }
 
 // SAFETY: a scene may be used and released from any thread. Changing it needs `&mut` or ownership of the builder, and
@@ -296,38 +356,33 @@ impl fmt::Debug for SceneOwner {
     }
 }
 
+const VERTICES: RTCBufferType = RTCBufferType::RTC_BUFFER_TYPE_VERTEX;
+const INDICES: RTCBufferType = RTCBufferType::RTC_BUFFER_TYPE_INDEX;
+
 /// The one reference we hold to a geometry until the scene has its own.
-struct GeometryOwner<'a> {
-    api: &'a Embree,
+struct GeometryOwner {
     raw: RTCGeometry,
+    device: Device,
 }
 
-impl GeometryOwner<'_> {
+impl GeometryOwner {
     /// Copies `items` into a new buffer of Embree's.
     fn fill<T: Copy>(
         &self,
         kind: RTCBufferType,
         format: RTCFormat,
         items: &[[T; 3]],
-        device: &Device,
     ) -> Result<(), Error> {
+        let (api, bytes) = (&self.device.library().api, size_of::<[T; 3]>());
         // SAFETY: the geometry is alive.
-        let buffer: *mut c_void = unsafe {
-            self.api.rtcSetNewGeometryBuffer(
-                self.raw,
-                kind,
-                0,
-                format,
-                size_of::<[T; 3]>(),
-                items.len(),
-            )
-        };
+        let buffer: *mut c_void =
+            unsafe { api.rtcSetNewGeometryBuffer(self.raw, kind, 0, format, bytes, items.len()) };
         if items.is_empty() {
             // Embree then has no buffer to show, or one of no use.
-            return device.take_error();
+            return self.device.take_error();
         }
         if buffer.is_null() {
-            return Err(unexplained(device));
+            return Err(unexplained(&self.device));
         }
         // SAFETY: the buffer was made for as many items of that size, and nobody else knows it yet.
         unsafe {
@@ -337,10 +392,10 @@ impl GeometryOwner<'_> {
     }
 }
 
-impl Drop for GeometryOwner<'_> {
+impl Drop for GeometryOwner {
     fn drop(&mut self) {
         // SAFETY: our one reference, released once, while the device is alive.
-        unsafe { self.api.rtcReleaseGeometry(self.raw) }
+        unsafe { self.device.library().api.rtcReleaseGeometry(self.raw) }
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod common;
 
-use std::{num::NonZeroU32, process::Command};
+use std::{num::NonZeroU32, process::Command, sync::Arc};
 
 use common::*;
 use embree_ffi::{
@@ -60,6 +60,53 @@ fn vertices_may_end_at_the_end_of_readable_memory() {
         assert!(builder.commit().unwrap().occluded(&up(true)));
         munmap(pages, 2 * PAGE);
     }
+}
+
+/// Corners of 16 bytes need no copy; whoever owns them is kept until the scene is gone.
+#[test]
+fn corners_may_be_read_in_place_as_long_as_the_scene_lives() {
+    let (vertices, indices) = soup(2000);
+    let padded = |index: u32| {
+        let [x, y, z] = vertices[index as usize];
+        [x, y, z, f32::NAN]
+    };
+    let corners: Vec<[[f32; 4]; 3]> = indices.iter().map(|corners| corners.map(padded)).collect();
+    let device = device();
+    for options in [
+        SceneOptions::default(),
+        SceneOptions::default().robust(true),
+        SceneOptions::default().compact(true),
+    ] {
+        let owner = Arc::new(corners.clone());
+        let mut builder = SceneBuilder::new(&device, options).unwrap();
+        let all = NonZeroU32::MAX;
+        // SAFETY: the owner's corners are never changed.
+        let added = unsafe { builder.add_in_place(&owner, all, owner.clone()) };
+        assert_eq!(added.unwrap(), 0);
+        let scene = builder.commit().unwrap();
+        let weak = Arc::downgrade(&owner);
+        drop(owner);
+        let copied = soup_scene(&device, options);
+        for ray in segments(2000) {
+            assert_eq!(scene.occluded(&ray), copied.occluded(&ray));
+        }
+        assert!(weak.upgrade().is_some(), "the scene keeps them");
+        drop(scene);
+        assert!(weak.upgrade().is_none(), "and lets them go");
+    }
+}
+
+/// A scene of low quality is built quickly only where its geometries are, too: otherwise it is the tree of medium quality.
+#[test]
+fn low_quality_builds_another_tree_than_medium() {
+    let bytes = |quality| {
+        let device = device();
+        let scene = soup_scene(&device, SceneOptions::default().quality(quality));
+        let bytes = device.memory_used();
+        drop(scene);
+        bytes
+    };
+    assert_ne!(bytes(BuildQuality::Low), bytes(BuildQuality::Medium));
 }
 
 /// A mask of 0 sees nothing, and a zeroed ray has one. Here a mask is all ones, or a `NonZeroU32`.

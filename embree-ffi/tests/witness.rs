@@ -162,6 +162,8 @@ fn functions_have_the_signatures_of_4_2() {
         rtcCommitGeometry(_),
         rtcSetGeometryMask(_, _),
         rtcSetNewGeometryBuffer(_, _, _, _, _, _),
+        rtcSetSharedGeometryBuffer(_, _, _, _, _, _, _, _),
+        rtcSetGeometryBuildQuality(_, _),
         rtcNewScene(_),
         rtcReleaseScene(_),
         rtcAttachGeometry(_, _),

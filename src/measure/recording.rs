@@ -11,10 +11,10 @@ use crate::render::{Progress, RecordedQuery, Settings, SettingsError, render};
 use crate::scene::{Scene, default_budget};
 use crate::shadow::{Answer, Prepared, ShadowQuery, Trace};
 
-/// Queries that one worker answers with the same memories; a tile with one light asks 256.
+/// Queries that one worker answers with the same memories, at least; a tile with one light asks 256.
 const BLOCK: usize = 4096;
 
-/// The shadow queries of a picture: tile by tile, within a tile light by light, as the renderer asks them.
+/// The shadow queries of a picture: tile by tile, within a tile generation by generation and light by light, as the renderer asks them.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// Pixels across.
@@ -22,7 +22,7 @@ pub struct Recording {
     /// Pixels down.
     pub height: u32,
     queries: Vec<RecordedQuery>,
-    /// Queries that follow each other and ask about the same light.
+    /// Queries that the renderer asks at once: about one light, of one generation of a unit.
     runs: Vec<Range<usize>>,
     /// Runs that make up a block.
     blocks: Vec<Range<usize>>,
@@ -88,23 +88,22 @@ impl Recording {
         Ok(Self::new(settings.width, settings.height, rendered.queries))
     }
 
-    /// Queries of a picture of that size, in the order in which they are to be asked.
+    /// Queries of a picture of that size, unit by unit, in the order in which they are to be asked.
     #[must_use]
-    pub fn new(width: u32, height: u32, queries: Vec<RecordedQuery>) -> Self {
-        let mut runs: Vec<Range<usize>> = Vec::new();
-        for run in queries.chunk_by(|a, b| a.light == b.light) {
-            let start = runs.last().map_or(0, |run| run.end);
-            runs.push(start..start + run.len());
-        }
-        let mut blocks: Vec<Range<usize>> = Vec::new();
-        let mut start = 0;
-        for (place, run) in runs.iter().enumerate() {
-            if run.end - runs[start].start >= BLOCK || place + 1 == runs.len() {
-                blocks.push(start..place + 1);
-                start = place + 1;
+    pub fn new(width: u32, height: u32, units: Vec<Vec<RecordedQuery>>) -> Self {
+        let (mut runs, mut blocks) = (Vec::new(), Vec::new());
+        let (mut end, mut first_run, mut first_query) = (0, 0, 0);
+        for (place, unit) in units.iter().enumerate() {
+            for run in unit.chunk_by(RecordedQuery::is_asked_with) {
+                runs.push(end..end + run.len());
+                end += run.len();
+            }
+            if end - first_query >= BLOCK || place + 1 == units.len() {
+                blocks.push(first_run..runs.len());
+                (first_run, first_query) = (runs.len(), end);
             }
         }
-        Self { width, height, queries, runs, blocks }
+        Self { width, height, queries: units.concat(), runs, blocks }
     }
 
     /// Whether there is anything to answer; `scene` is what the scene is called.
@@ -126,7 +125,7 @@ impl Recording {
         self.queries.iter().map(|recorded| &recorded.query.ray)
     }
 
-    /// The runs of queries about one light each, in order: light and place.
+    /// The runs of queries that are asked at once, in order: light and place.
     pub fn runs(&self) -> impl Iterator<Item = (usize, Range<usize>)> {
         self.runs.iter().map(|run| (self.queries[run.start].light as usize, run.clone()))
     }
@@ -160,5 +159,36 @@ impl Recording {
     #[must_use]
     pub fn answers_of(&self, engine: &dyn Occlusion) -> Vec<bool> {
         self.answers(&Trace::new(engine))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin;
+
+    #[test]
+    fn a_picture_with_one_light_is_answered_call_by_call_as_it_was_rendered_on_all_threads() {
+        let mut draft = builtin::draft_at("drum", 0.02).unwrap();
+        draft.lights.truncate(1);
+        let scene = draft.finish().unwrap();
+        let settings = Settings { width: 96, height: 72, samples: 2, ..Settings::default() };
+        let recording = Recording::of(&scene, &settings, &Progress::default()).unwrap();
+        let mut ends = Vec::new();
+        let walk =
+            Engine::<_, Exact>::new(scene.triangles.clone(), Bvh2::new(&scene.triangles), None);
+        let mut end = 0;
+        crate::render::record(&scene, &walk, &Trace::new(&walk), &settings, |unit| {
+            for run in unit.chunk_by(RecordedQuery::is_asked_with) {
+                end += run.len();
+                ends.push(end);
+            }
+        })
+        .unwrap();
+        let runs: Vec<usize> = recording.runs().map(|(_, run)| run.end).collect();
+        assert_eq!(runs, ends);
+        assert!(runs.len() > 3 && recording.blocks.len() > 1, "{runs:?} {:?}", recording.blocks);
+        let answered: usize = recording.blocks.iter().map(|block| block.len()).sum();
+        assert_eq!(answered, runs.len());
     }
 }

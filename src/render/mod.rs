@@ -51,8 +51,8 @@ pub struct Rendered {
     pub mask: Option<ShadowMask>,
     /// How the shadow queries of each pixel were answered, if asked for.
     pub answers: Option<AnswerMap>,
-    /// All shadow queries, light by light within each generation of each unit, if asked for.
-    pub queries: Vec<RecordedQuery>,
+    /// All shadow queries, unit by unit, within each light by light in each generation; empty if not asked for.
+    pub queries: Vec<Vec<RecordedQuery>>,
     /// Counts.
     pub statistics: Statistics,
 }
@@ -134,7 +134,9 @@ pub fn render(
             }
         }
         statistics += unit.statistics;
-        queries.extend(unit.queries);
+        if settings.record {
+            queries.push(unit.queries);
+        }
     }
     Ok(Rendered { film, mask, answers, queries, statistics })
 }

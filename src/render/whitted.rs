@@ -36,6 +36,14 @@ pub struct RecordedQuery {
     pub blocked: bool,
 }
 
+impl RecordedQuery {
+    /// Whether the renderer asks both at once, if they are of one unit: about one light, in one generation.
+    #[must_use]
+    pub fn is_asked_with(&self, other: &Self) -> bool {
+        (self.light, self.query.path.level()) == (other.light, other.query.path.level())
+    }
+}
+
 /// What one unit of work gives.
 #[derive(Debug, Default)]
 pub(super) struct Done {

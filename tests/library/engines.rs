@@ -45,7 +45,7 @@ fn queries_about_a_light_that_is_not_there_are_not_compared() {
     let query =
         ShadowQuery { ray: Ray::between(Vec3::ZERO, 3.0 * Vec3::Y), path: Path::EYE, spawner: 0 };
     let recorded = RecordedQuery { query, light: 9, pixel: (0, 0), blocked: false };
-    let recording = Recording::new(1, 1, vec![recorded]);
+    let recording = Recording::new(1, 1, vec![vec![recorded]]);
     let contenders =
         [Contender::new(Backend::Grid, Test::Exact), Contender::new(Backend::Bvh2, Test::Exact)];
     let refused = compare(&scene, &recording, &contenders, &AtomicU64::new(0)).unwrap_err();
@@ -62,7 +62,7 @@ fn a_comparison_of_nothing_contradicts_nothing() {
     let recorded = RecordedQuery { query, light: 0, pixel: (0, 0), blocked: false };
     for (scene, queries) in [(&scene, vec![]), (&bare, vec![]), (&bare, vec![recorded])] {
         let (recording, answers) =
-            (Recording::new(1, 1, queries.clone()), vec![false; queries.len()]);
+            (Recording::new(1, 1, vec![queries.clone()]), vec![false; queries.len()]);
         let mut comparison = Comparison::new(scene, &recording);
         comparison.enter("it", Claim::Exact, &answers);
         let report = comparison.finish();

@@ -363,7 +363,7 @@ fn method(page: &mut Page, report: &Report, command: &str) {
     page.paragraph("Engines: in its turn each was built from nothing, answered all shadow rays of the picture, \
         answered them twice again, and was dropped. Speed is that of the faster of the last two passes; with \
         building it is that of building, preparing and the first pass together, so lazily built parts count \
-        there. Embree builds with threads of its own.");
+        there.");
     page.paragraph("Truth is exact real arithmetic on the bits of each ray and triangle. A ray that touches a \
         triangle only at an end of its open interval is a tie, which is no error. Intervals of wrong answers \
         are Wilson's, at 95 %: none of a thousand leaves 3,800 per million possible.");

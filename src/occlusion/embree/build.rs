@@ -1,12 +1,10 @@
 //! From triangles and options to a scene in Embree.
 
-use std::collections::HashMap;
 use std::num::NonZeroU32;
 use std::ops::Range;
 use std::sync::Arc;
 
-use embree_ffi::{BuildQuality, Device, DeviceConfig, Mesh, SceneBuilder, SceneOptions};
-use glam::Vec3;
+use embree_ffi::{BuildQuality, Device, DeviceConfig, SceneBuilder, SceneOptions};
 
 use super::{Cells, Embree, OPAQUE, TRANSPARENT};
 use crate::geometry::lanes::Arithmetic;
@@ -19,7 +17,7 @@ pub use embree_ffi::Isa;
 /// How much work goes into Embree's structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum Quality {
-    /// A tree of trees, quickly built.
+    /// Along Morton's curve, quickly built.
     Low,
     /// Surface area heuristic.
     #[default]
@@ -69,7 +67,7 @@ impl EmbreeOptions {
 }
 
 impl Embree {
-    /// Copies the triangles into Embree and builds its structure.
+    /// Builds Embree's structure over the triangles, which it reads where they lie, with the threads of the current pool.
     ///
     /// # Errors
     /// If Embree cannot be loaded, the CPU lacks the kernels, or memory does not suffice.
@@ -78,8 +76,10 @@ impl Embree {
         robust: bool,
         options: EmbreeOptions,
     ) -> Result<Self, embree_ffi::Error> {
-        let config =
-            options.isa.map_or_else(DeviceConfig::default, |isa| DeviceConfig::default().isa(isa));
+        let mut config = DeviceConfig::default().threads(rayon::current_num_threads());
+        if let Some(isa) = options.isa {
+            config = config.isa(isa);
+        }
         let device = Device::new(config)?;
         let quality = match options.quality {
             Quality::Low => BuildQuality::Low,
@@ -88,31 +88,29 @@ impl Embree {
         };
         let scene_options = SceneOptions::default().quality(quality).robust(robust);
         let opaque = triangles.opaque_count();
-        let kinds = [(0..opaque, OPAQUE), (opaque..triangles.len() as u32, TRANSPARENT)];
-        let meshes: Vec<SharedVertices> = kinds
-            .into_iter()
-            .filter(|(range, _)| !range.is_empty())
-            .map(|(range, mask)| SharedVertices::new(&triangles, range, mask))
-            .collect();
-        let mut copied = 0;
-        let mut commit = |meshes: &[SharedVertices]| {
+        let mut kinds = vec![(0..opaque, OPAQUE), (opaque..triangles.len() as u32, TRANSPARENT)];
+        kinds.retain(|(range, _)| !range.is_empty());
+        let mut indices = 0;
+        let mut commit = |kinds: &[(Range<TriangleId>, NonZeroU32)]| {
             let mut builder = SceneBuilder::new(&device, scene_options)?;
-            for mesh in meshes {
-                builder.add(mesh.mesh())?;
-                copied += mesh.bytes();
+            for (range, mask) in kinds {
+                let corners = &triangles.corners()[range.start as usize..range.end as usize];
+                // SAFETY: nothing changes triangles that are shared, and a clone of the Arc keeps them.
+                unsafe { builder.add_in_place(corners, *mask, triangles.clone())? };
+                indices += corners.len() * size_of::<[u32; 3]>();
             }
             builder.commit()
         };
-        let scene = commit(&meshes)?;
+        let scene = commit(&kinds)?;
         check_width(&scene, options.width)?;
         let transparent = if is_transparent_apart(&triangles) {
-            Some(Arc::new(commit(&meshes[1..])?))
+            Some(Arc::new(commit(&kinds[1..])?))
         } else {
             None
         };
-        let firsts = meshes.iter().map(|mesh| mesh.first).collect();
-        // What Embree reports includes the copies of vertices and indices; its structure is the rest.
-        let bytes = device.memory_used().saturating_sub(copied);
+        let firsts = kinds.iter().map(|(range, _)| range.start).collect();
+        // What Embree reports includes the indices of corners; its structure is the rest.
+        let bytes = device.memory_used().saturating_sub(indices);
         let (scene, cells) = (Arc::new(scene), Arc::new(Cells::new(triangles.clone())));
         let at_least = at_least(&triangles, cells.clone(), robust, options.arithmetic()).into();
         Ok(Self { triangles, scene, transparent, firsts, options, bytes, cells, at_least })
@@ -130,37 +128,5 @@ pub(super) fn check_width(
         PacketWidth::Four => scene.packets::<4>(coherence).map(drop),
         PacketWidth::Eight => scene.packets::<8>(coherence).map(drop),
         PacketWidth::Sixteen => scene.packets::<16>(coherence).map(drop),
-    }
-}
-
-/// Triangles whose equal corners are joined: Embree's own refer to vertices.
-struct SharedVertices {
-    first: TriangleId,
-    mask: NonZeroU32,
-    vertices: Vec<[f32; 3]>,
-    indices: Vec<[u32; 3]>,
-}
-
-impl SharedVertices {
-    fn new(triangles: &Triangles, range: Range<TriangleId>, mask: NonZeroU32) -> Self {
-        let first = range.start;
-        let mut vertices = Vec::new();
-        let mut known: HashMap<[u32; 3], u32> = HashMap::new();
-        let mut index = |corner: Vec3| {
-            *known.entry(corner.to_array().map(f32::to_bits)).or_insert_with(|| {
-                vertices.push(corner.to_array());
-                vertices.len() as u32 - 1
-            })
-        };
-        let indices = range.map(|id| triangles.get(id).map(&mut index)).collect();
-        Self { first, mask, vertices, indices }
-    }
-
-    fn mesh(&self) -> Mesh<'_> {
-        Mesh::new(&self.vertices, &self.indices).with_mask(self.mask)
-    }
-
-    fn bytes(&self) -> usize {
-        size_of_val(&*self.vertices) + size_of_val(&*self.indices)
     }
 }
