@@ -183,6 +183,54 @@ fn nothing_is_said_of_a_camera_or_light_that_rays_do_not_need() {
     assert_eq!(stats["notes"].as_array().unwrap().len(), 1, "{}", stats["notes"]);
 }
 
+/// Whoever asks what is blocked would not guess that a solid thing is not.
+#[test]
+fn transparent_triangles_are_said_to_block_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("a.mtl"), "newmtl glass\nd 0.5\n").unwrap();
+    let glass = "usemtl glass\nf 1 2 3\n";
+    fs::write(folder.join("rays.csv"), "1,1,1,1,1,-1\n").unwrap();
+    for (faces, told) in [
+        (glass.to_owned(), "1 of 2 triangles is transparent: it attenuates light and blocks"),
+        (glass.repeat(2), "2 of 3 triangles are transparent: they attenuate light and block"),
+    ] {
+        let text = format!("mtllib a.mtl\n{TRIANGLE}{faces}");
+        fs::write(folder.join("scene.obj"), text).unwrap();
+        let output = run(folder, "query scene.obj --rays rays.csv -o out.csv --stats stats.json");
+        succeeded(&output);
+        let told = format!("{told} nothing in `query`");
+        assert!(said(&output).contains(&told), "{}", said(&output));
+        let stats = fs::read_to_string(folder.join("stats.json")).unwrap();
+        assert!(stats.contains(&told), "{stats}");
+    }
+    let output = run(folder, "compare scene.obj --backends grid,bvh2 --size 4x3");
+    assert!(said(&output).contains("block nothing in `compare`"), "{}", said(&output));
+}
+
+/// Each as spreadsheets and older machines write it.
+#[test]
+fn rays_are_read_as_others_write_them_or_refused_with_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("triangle.obj"), TRIANGLE).unwrap();
+    let line = "query triangle.obj --rays rays.csv -o out.csv";
+    let rows = "ox,oy,oz,tx,ty,tz\n1,1,1,1,1,-1 # down\n1,1,1,1,1,2\n";
+    for text in [rows.to_owned(), rows.replace('\n', "\r"), rows.replace('\n', "\r\n")] {
+        fs::write(folder.join("rays.csv"), text).unwrap();
+        succeeded(&run(folder, line));
+        assert_eq!(fs::read_to_string(folder.join("out.csv")).unwrap(), "1\n0\n");
+    }
+    for (separator, found) in [(";", "semicolons"), ("\t", "tabs"), (" ", "blanks")] {
+        fs::write(folder.join("rays.csv"), ["1"; 6].join(separator)).unwrap();
+        let told = format!("has {found} between its numbers; give commas");
+        assert_refusal(&run(folder, line), &["line 1: ", &told, "delimiter=','"]);
+    }
+    let words: Vec<u8> = rows.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    fs::write(folder.join("rays.csv"), words).unwrap();
+    assert_refusal(&run(folder, line), &["rays.csv: this is UTF-16; save it as UTF-8"]);
+}
+
 /// Both ends are finite f32 numbers, and yet there is no ray between them.
 #[test]
 fn a_segment_longer_than_f32_is_said_to_be_so() {

@@ -8,7 +8,9 @@ use serde::Serialize;
 
 use super::failure::{Failure, say};
 use super::numbers::whole;
-use super::options::{ContenderOptions, MOST_DEPTH, MOST_THREADS, load_scene, parse_size, pool};
+use super::options::{
+    ContenderOptions, MOST_DEPTH, MOST_THREADS, load_scene, note_transparent, parse_size, pool,
+};
 use super::outputs::{Outputs, check_outputs, print_beside_files};
 use super::progress::{with_bar, with_rate};
 use crate::measure::compare::{CompareError, Report, compare};
@@ -106,7 +108,8 @@ impl Compare {
         check_outputs(&outputs, &[&self.scene])?;
         let pool = pool(self.threads)?;
 
-        let scene = load_scene(&self.scene, &outputs)?;
+        let mut scene = load_scene(&self.scene, &outputs)?;
+        note_transparent(&mut scene, "compare");
         Recording::check(&scene, &settings)?;
         for reason in &left_out {
             say!("umbra: left out: {reason}");

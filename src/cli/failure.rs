@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use crate::render::OutputError;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, error::advice};
 use crate::whole_file::Unwritable;
 
 /// Prints a line to standard error; that nobody reads it is no failure.
@@ -33,7 +33,7 @@ pub(super) enum Failure {
 impl Failure {
     /// Something that is read cannot be.
     pub fn unreadable(path: &Path, reason: &io::Error) -> Self {
-        Self::Input(format!("cannot read {}: {reason}", path.display()))
+        Self::Input(format!("cannot read {}: {reason}{}", path.display(), advice(reason)))
     }
 
     /// Something that is written cannot be.

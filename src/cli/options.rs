@@ -15,7 +15,7 @@ use super::lists::known;
 use super::numbers::whole;
 use super::outputs::{check_apart, check_outputs};
 use super::progress::with_word;
-use crate::measure::contender;
+use crate::measure::{contender, count, grouped};
 use crate::occlusion::{
     Backend, BackendError, BuildOptions, GridError, GridOptions, Occlusion, Test, build,
 };
@@ -317,6 +317,24 @@ pub(super) fn load_triangles(scene: &Path, outputs: &[&Path]) -> Result<Scene, F
         let light = Light::Directional { direction: DVec3::Y, irradiance: Vec3::ONE };
         Draft { camera: Some(camera), lights: vec![light], ..draft }
     })
+}
+
+/// Says what transparent triangles are to a command that asks only whether anything blocks, if there are any.
+pub(super) fn note_transparent(scene: &mut Scene, command: &str) {
+    let all = scene.triangles.len() as u64;
+    let transparent = all - u64::from(scene.triangles.opaque_count());
+    let [are, they_block] = match transparent {
+        0 => return,
+        1 => ["is", "it attenuates light and blocks"],
+        _ => ["are", "they attenuate light and block"],
+    };
+    let note = format!(
+        "{} of {} {are} transparent: {they_block} nothing in `{command}`",
+        grouped(transparent),
+        count(all, "triangle")
+    );
+    say!("umbra: {}: {note}", scene.name);
+    scene.notes.push(note);
 }
 
 fn finish_draft(

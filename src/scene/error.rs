@@ -1,6 +1,6 @@
 //! What can be wrong with a scene.
 
-use std::path::PathBuf;
+use std::{io, path::PathBuf};
 
 use crate::whole_file::Unwritable;
 
@@ -8,13 +8,13 @@ use crate::whole_file::Unwritable;
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// The file could not be opened or read.
-    #[error("cannot read {path}: {reason}", path = path.display())]
+    #[error("cannot read {path}: {reason}{}", advice(reason), path = path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
         /// What the system said.
         #[source]
-        reason: std::io::Error,
+        reason: io::Error,
     },
     /// The file could not be written.
     #[error("cannot write {path}: {reason}", path = path.display())]
@@ -23,7 +23,7 @@ pub enum SceneError {
         path: PathBuf,
         /// What the system said.
         #[source]
-        reason: std::io::Error,
+        reason: io::Error,
     },
     /// Scenes are not written to files of such a name.
     #[error("{path}: scenes are written as .obj or .glb; give a name that ends so", path = path.display())]
@@ -71,6 +71,15 @@ pub enum SceneError {
         /// The estimate and the limit.
         problem: String,
     },
+}
+
+/// What to do about a file that cannot be read, after a semicolon.
+pub(crate) fn advice(reason: &io::Error) -> &'static str {
+    match reason.kind() {
+        io::ErrorKind::NotFound => "; check its name and its folder",
+        io::ErrorKind::PermissionDenied => "; give yourself the right to read it",
+        _ => "",
+    }
 }
 
 impl From<Unwritable> for SceneError {

@@ -1,13 +1,16 @@
 //! From a name or a path to a scene.
 
 use std::{
-    borrow::Cow,
     fs,
     io::{self, Read},
     path::Path,
 };
 
-use super::{Draft, Scene, SceneError, builtin, gltf, obj, toml};
+use super::{
+    Draft, Scene, SceneError, builtin, gltf, obj,
+    text::{UTF_16, is_utf_16, without_mark},
+    toml,
+};
 
 /// Kinds of files that [`load`] reads, for messages.
 const READABLE: &str = ".obj, .glb, .gltf and .toml";
@@ -70,6 +73,9 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     if bytes.is_empty() {
         return Err(malformed(path, "the file is empty"));
     }
+    if is_utf_16(&bytes) {
+        return Err(malformed(path, UTF_16));
+    }
     Ok(without_mark(bytes))
 }
 
@@ -82,25 +88,6 @@ pub(super) fn read_plain(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(metadata.len().min(most) as usize);
     fs::File::open(path)?.take(most).read_to_end(&mut bytes)?;
     Ok(bytes)
-}
-
-/// Takes away the byte order mark that some editors put before UTF-8 text: it is no part of the first
-/// statement.
-pub(super) fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
-    if bytes.starts_with(b"\xef\xbb\xbf") {
-        bytes.drain(..3);
-    }
-    bytes
-}
-
-/// The text of a file. Where a carriage return alone ends a line, as on old Macintoshes, a line feed stands
-/// in its place.
-pub(super) fn text_of(bytes: &[u8]) -> Cow<'_, str> {
-    let text = String::from_utf8_lossy(bytes);
-    if text.split('\r').skip(1).all(|rest| rest.starts_with('\n')) {
-        return text;
-    }
-    Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n"))
 }
 
 /// A [`SceneError::Malformed`].

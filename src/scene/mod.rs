@@ -7,7 +7,7 @@
 pub mod builtin;
 mod camera;
 mod draft;
-mod error;
+pub(crate) mod error;
 mod gltf;
 mod light;
 mod load;
@@ -18,6 +18,7 @@ mod obj;
 mod placement;
 mod polygon;
 mod sensible;
+pub(crate) mod text;
 mod toml;
 mod write;
 

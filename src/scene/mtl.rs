@@ -12,22 +12,10 @@ use glam::Vec3;
 
 use super::{
     Draft, Material,
-    load::{read_plain, text_of, without_mark},
+    load::read_plain,
+    material::listed,
+    text::{UTF_16, before_comment, is_utf_16, number, number_words, text_of, without_mark},
 };
-
-/// What stands before a `#` that follows white space: all but a comment, unless the `#` is part of a
-/// name, as in `Material #25`.
-pub(super) fn before_comment(names: &str) -> &str {
-    let begins =
-        |&(at, _): &(usize, &str)| names[..at].chars().next_back().is_none_or(char::is_whitespace);
-    let end = names.match_indices('#').find(begins).map_or(names.len(), |(at, _)| at);
-    names[..end].trim_end()
-}
-
-/// The words that follow a keyword that numbers follow: they hold no `#` of their own.
-pub(super) fn number_words(rest: &str) -> impl Iterator<Item = &str> {
-    rest.split('#').take(1).flat_map(str::split_whitespace)
-}
 
 /// The MTL files that an OBJ file names. Each is read once, however often it is named.
 pub(super) struct Libraries<'a> {
@@ -71,6 +59,10 @@ impl<'a> Libraries<'a> {
         self.is_there.insert(path.clone(), bytes.is_some());
         let Some(bytes) = bytes else { return false };
         draft.files.push(path);
+        if is_utf_16(&bytes) {
+            draft.notes.push(format!("material file '{name}': {UTF_16}"));
+            return true;
+        }
         materials.extend(parse(name, &text_of(&bytes), draft));
         true
     }
@@ -110,6 +102,14 @@ fn parse(name: &str, text: &str, draft: &mut Draft) -> Vec<Material> {
     }) {
         draft.note("'Tf' is left out beside 'illum 4', as programs differ in what it means: give 'd' for glass");
     }
+    let solid: Vec<String> =
+        materials.iter().filter(|mtl| is_solid_by_tr(mtl)).map(|mtl| mtl.name.clone()).collect();
+    if !solid.is_empty() {
+        draft.note(format!(
+            "opaque, for 'Tr' of 1 or more without 'd' is written for what is solid, too: {}; write 'd 0' for what is invisible",
+            listed(&solid)
+        ));
+    }
     materials.iter().map(material).collect()
 }
 
@@ -123,7 +123,7 @@ fn sound_line(line: &str) -> Result<String, String> {
         // Materials are in f32.
         let is_held = |number: &f64| (*number as f32).is_finite();
         let numbers: Option<Vec<f64>> =
-            number_words(rest).map(|word| word.parse().ok().filter(is_held)).collect();
+            number_words(rest).map(|word| number(word).filter(is_held)).collect();
         numbers.filter(|numbers| !numbers.is_empty()).ok_or_else(|| wrong(wanted))
     };
     Ok(match keyword {
@@ -160,8 +160,19 @@ fn glows_by_texture(mtl: &tobj::Material) -> bool {
         && mtl.emissive.is_some_and(|emission| emission != [0.0; 3])
 }
 
+/// What `Tr` says.
+fn transparency(mtl: &tobj::Material) -> Option<f64> {
+    mtl.unknown_param.get("Tr")?.parse().ok()
+}
+
+/// Whether it would be invisible by `Tr` alone. Programs that take it for opacity write that for whatever is solid, and
+/// hardly anybody writes surfaces that are not to be seen.
+fn is_solid_by_tr(mtl: &tobj::Material) -> bool {
+    mtl.dissolve.is_none() && transparency(mtl).is_some_and(|transparency| transparency >= 1.0)
+}
+
 fn opacity(mtl: &tobj::Material) -> f32 {
-    let transparency = mtl.unknown_param.get("Tr").and_then(|value| value.parse::<f64>().ok());
+    let transparency = transparency(mtl).filter(|_| !is_solid_by_tr(mtl));
     let opacity = mtl.dissolve.or(transparency.map(|t| 1.0 - t)).unwrap_or(1.0);
     opacity.clamp(0.0, 1.0) as f32
 }

@@ -14,10 +14,11 @@ use glam::{DVec3, Vec3};
 use super::{
     Draft, DraftTriangle, Material, SceneError,
     gltf::MAGIC as GLB_MAGIC,
-    load::{empty_draft, malformed, read_file, text_of},
+    load::{empty_draft, malformed, read_file},
     material::listed,
-    mtl::{Libraries, before_comment, number_words},
+    mtl::Libraries,
     polygon::triangulate,
+    text::{before_comment, number, number_words, text_of},
 };
 
 /// Reads an OBJ file and its MTL files.
@@ -111,14 +112,14 @@ impl Materials {
 /// Joins each line that ends in `\` with the next one. Blank lines follow, as many as went, so that those
 /// below keep their numbers. A comment goes no further than its line.
 fn join_continued(text: &str) -> Cow<'_, str> {
-    if !text.contains("\\\n") && !text.contains("\\\r\n") {
+    if !text.contains('\\') {
         return Cow::Borrowed(text);
     }
     let mut joined = String::with_capacity(text.len());
     let mut gone = 0;
     for line in text.lines() {
         let is_comment = gone == 0 && line.trim_start().starts_with('#');
-        match line.strip_suffix('\\') {
+        match line.trim_end().strip_suffix('\\') {
             Some(part) if !is_comment => {
                 joined.extend([part, " "]);
                 gone += 1;
@@ -154,20 +155,27 @@ fn read_vertices(
 ) -> Result<Vertices, SceneError> {
     let mut vertices = Vertices::default();
     let mut libraries = Libraries::of(path);
-    for (number, keyword, rest) in lines(text) {
+    for (line, keyword, rest) in lines(text) {
         let vector = || {
-            let mut words = number_words(rest).map(str::parse::<f64>);
-            match (words.next(), words.next(), words.next()) {
-                (Some(Ok(x)), Some(Ok(y)), Some(Ok(z))) => Ok(DVec3::new(x, y, z)),
-                _ => Err(malformed(
-                    path,
-                    format!("line {number}: three numbers must follow '{keyword}', not '{rest}'"),
-                )),
-            }
+            let mut words = number_words(rest).map(number);
+            let mut coordinate = || words.next().flatten();
+            Some(DVec3::new(coordinate()?, coordinate()?, coordinate()?))
         };
         match keyword {
-            "v" => vertices.positions.push(vector()?),
-            "vn" => vertices.normals.push(vector()?.as_vec3()),
+            "v" => {
+                // A fourth number alone is a weight.
+                if number_words(rest).nth(5).is_some() {
+                    draft.note("the colours of vertices are left out: those of materials instead");
+                }
+                vertices.positions.push(vector().ok_or_else(|| {
+                    malformed(
+                        path,
+                        format!("line {line}: three numbers must follow '{keyword}', not '{rest}'"),
+                    )
+                })?);
+            }
+            // A surface does well without its normals, but not without its corners.
+            "vn" => vertices.normals.push(vector().map_or(Vec3::NAN, |normal| normal.as_vec3())),
             "mtllib" => {
                 for material in libraries.read(rest, draft) {
                     materials.define(material);
@@ -187,14 +195,16 @@ fn read_faces(
     draft: &mut Draft,
 ) -> Result<(), SceneError> {
     let mut seen = Seen { positions: 0, normals: 0 };
-    let mut material = None;
+    let (mut material, mut plain) = (None, None);
     let (mut corners, mut positions) = (Vec::new(), Vec::new());
     for (number, keyword, rest) in lines(text) {
         match keyword {
             "v" => seen.positions += 1,
             "vn" => seen.normals += 1,
+            "usemtl" if rest.is_empty() => material = None,
             "usemtl" => material = Some(materials.named(rest.trim_end())),
-            "f" => {
+            // What `f` was called once.
+            "f" | "fo" => {
                 corners.clear();
                 for word in number_words(rest) {
                     corners.push(
@@ -203,11 +213,16 @@ fn read_faces(
                         })?,
                     );
                 }
-                let material = *material.get_or_insert_with(|| materials.add(Material::default()));
+                let material = material.unwrap_or_else(|| {
+                    *plain.get_or_insert_with(|| materials.add(Material::default()))
+                });
                 positions.clear();
                 positions.extend(corners.iter().map_while(|corner| corner.position));
                 if corners.iter().any(|corner| corner.is_normal_lost) {
                     draft.note("faces with a normal whose index is out of range are flat");
+                }
+                if corners.iter().any(|corner| !corner.normal.is_finite()) {
+                    draft.note("faces with a normal that is not three finite numbers are flat");
                 }
                 if positions.len() < corners.len() {
                     draft.dropped.out_of_range += 1;
@@ -226,7 +241,10 @@ fn read_faces(
                 }
             }
             "l" | "p" => draft.note("points and lines are left out"),
-            "curv" | "curv2" | "surf" => draft.note("curves and free-form surfaces are left out"),
+            "curv" | "curv2" | "surf" | "bzp" | "bsp" | "cdc" | "cdp" => {
+                draft.note("curves and free-form surfaces are left out");
+            }
+            "call" => draft.note("what is in the files that 'call' names is left out"),
             _ => {}
         }
     }

@@ -84,7 +84,7 @@ fn fitted(scene: &Scene, from: DVec3, up: DVec3) -> Camera {
 }
 
 /// Lights in place of emissive surfaces, and a sun at the side of the camera where there are none or
-/// they are but sparks in a large scene; in a closed room, where no sun comes in, a lamp under the ceiling.
+/// they are but sparks in a large scene; in a room, into which hardly any sun comes, a lamp under the ceiling.
 pub(super) fn add_lights(scene: &mut Scene) {
     let found = emitters::lights(scene);
     let mut added = Vec::new();

@@ -64,7 +64,8 @@ fn indices_to_nowhere_are_refused() {
                 }
             }
         });
-        assert_eq!(message, format!("a.glb: {kind} 7 is used, but the file has only {count}"));
+        let there = if count == 0 { "none".to_owned() } else { format!("only {count}") };
+        assert_eq!(message, format!("a.glb: {kind} 7 is used, but the file has {there}"));
     }
 }
 
@@ -101,15 +102,15 @@ fn accessors_of_the_wrong_type_are_refused() {
         ("/accessors/0/componentType", json!(5123), "accessor 0 (positions) is of the wrong type"),
         ("/accessors/0/type", json!("VEC2"), "accessor 0 (positions) is of the wrong type"),
         ("/accessors/1/componentType", json!(5126), "accessor 1 (indices) is of the wrong type"),
-        ("/meshes/0/primitives/0/mode", json!(9), "a primitive has an unknown mode"),
-        ("/meshes/0/primitives/0/attributes", json!({}), "a primitive has no positions"),
+        ("/meshes/0/primitives/0/mode", json!(9), "primitive 0 of mesh 0 has an unknown mode"),
+        ("/meshes/0/primitives/0/attributes", json!({}), "primitive 0 of mesh 0 has no positions"),
         (
             "/extensionsRequired",
             json!(["KHR_draco_mesh_compression"]),
             "KHR_draco_mesh_compression",
         ),
         ("/nodes/0/children", json!([0]), "node 0 is below itself"),
-        ("/scenes", json!([]), "scene 0 is used, but the file has only 0"),
+        ("/scenes", json!([]), "scene 0 is used, but the file has none"),
     ] {
         let message = refused(|document| {
             let (parent, field) = place.rsplit_once('/').expect("a pointer");

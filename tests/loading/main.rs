@@ -1,6 +1,8 @@
 //! What the loaders make of small files, sound and damaged.
 
 mod damaged_gltf;
+mod foreign_gltf;
+mod foreign_obj;
 mod gltf;
 mod gltf_materials;
 mod gltf_shapes;
@@ -77,6 +79,7 @@ fn a_missing_file_is_named() {
     for name in ["nowhere.obj", "nowhere.glb", "nowhere.gltf", "nowhere.toml"] {
         let message = Files::new().refusal(name);
         assert!(message.starts_with(&format!("cannot read {name}: ")), "{message}");
+        assert!(message.ends_with("; check its name and its folder"), "{message}");
     }
 }
 

@@ -54,6 +54,35 @@ fn a_closed_room_is_seen_from_its_emptiest_corner_by_a_lamp_within() {
     assert!(intensity.min_element() > 0.0);
 }
 
+/// Its walls must be seen from within: those of a solid hide a lamp.
+#[test]
+fn a_room_with_an_open_side_is_lit_by_a_lamp_within() {
+    let open = |gone: usize, is_seen_from_within: bool| {
+        let text = cuboid(DVec3::ZERO, DVec3::new(4.0, 3.0, 6.0), is_seen_from_within);
+        let mut faces = 0;
+        let is_kept = |line: &&str| {
+            faces += usize::from(line.starts_with('f'));
+            !line.starts_with('f') || faces - 1 != gone
+        };
+        // What is gone still counts for the box of the room.
+        let lines: Vec<&str> = text.lines().filter(is_kept).collect();
+        let cupboard = cuboid(DVec3::new(2.4, 0.01, 3.6), DVec3::new(3.7, 2.0, 5.6), false);
+        scene("room.obj", format!("{}\n{cupboard}", lines.join("\n")))
+    };
+    let front = open(5, true);
+    assert!(notes_say(&front, "looks into the open side"), "{:?}", front.notes);
+    let [Light::Point { position, .. }] = front.lights[..] else {
+        panic!("one lamp, not {:?}", front.lights)
+    };
+    assert!(is_within(&front, position) && (position + front.origin).y > 2.0, "{position}");
+    for (gone, is_seen_from_within) in [(3, true), (5, false)] {
+        let scene = open(gone, is_seen_from_within);
+        let is_lamp = matches!(scene.lights[..], [Light::Point { .. }]);
+        // The chosen camera looks down into a room without a ceiling, so that a wall is the ceiling that it sees.
+        assert_eq!(is_lamp, gone == 3, "{:?}", scene.notes);
+    }
+}
+
 #[test]
 fn a_solid_is_seen_from_outside_whatever_is_in_it_and_so_is_an_empty_box() {
     for solid in [room(false, true), room(true, false), room(false, false)] {

@@ -1,5 +1,9 @@
-//! Rays as text: six numbers a line with commas between; lines that are blank or begin with `#` are skipped.
-//! Numbers and names may stand in double quotes.
+//! Rays as text: six numbers a line with commas between; blank lines are skipped, and so is what follows a `#` at the
+//! beginning of a word. Numbers and names may stand in double quotes.
+
+use std::borrow::Cow;
+
+use crate::scene::text::{before_comment, number, with_line_feeds};
 
 /// Characters of a bad line that a message shows.
 const SHOWN: usize = 60;
@@ -24,7 +28,8 @@ const COLUMNS: [&str; 6] = ["ox", "oy", "oz", "tx", "ty", "tz"];
 pub(super) fn header(bytes: &[u8]) -> (usize, u64) {
     let mark = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let mut end = mark;
-    for (number, line) in (1..).zip(bytes[mark..].split_inclusive(|&byte| byte == b'\n')) {
+    let line_end = line_end(bytes);
+    for (number, line) in (1..).zip(bytes[mark..].split_inclusive(|&byte| byte == line_end)) {
         end += line.len();
         let line = String::from_utf8_lossy(line);
         if is_row(&line) {
@@ -35,13 +40,25 @@ pub(super) fn header(bytes: &[u8]) -> (usize, u64) {
     (mark, 0)
 }
 
+/// What ends the lines of a text: a carriage return where there is no line feed at all, as on old Macintoshes.
+fn line_end(bytes: &[u8]) -> u8 {
+    if bytes.contains(&b'\n') { b'\n' } else { b'\r' }
+}
+
+/// Where the last line ends of a text that may be cut within a line.
+pub(super) fn last_line_end(bytes: &[u8]) -> Option<usize> {
+    let line_end = line_end(bytes);
+    bytes.iter().rposition(|&byte| byte == line_end)
+}
+
 /// Cuts text into parts of whole lines, each of about `size` bytes.
 pub(super) fn parts(mut bytes: &[u8], size: usize) -> Vec<&[u8]> {
     let mut parts = Vec::new();
+    let line_end = line_end(bytes);
     while !bytes.is_empty() {
         let after = size.min(bytes.len());
-        let line_end = bytes[after..].iter().position(|&byte| byte == b'\n');
-        let (part, rest) = bytes.split_at(line_end.map_or(bytes.len(), |at| after + at + 1));
+        let end = bytes[after..].iter().position(|&byte| byte == line_end);
+        let (part, rest) = bytes.split_at(end.map_or(bytes.len(), |at| after + at + 1));
         parts.push(part);
         bytes = rest;
     }
@@ -54,21 +71,17 @@ pub(super) fn decode(bytes: &[u8], rows: &mut Vec<[f64; 6]>) -> Result<u64, BadL
         Ok(text) => (text, true),
         Err(error) => {
             let valid = &bytes[..error.valid_up_to()];
-            let lines = valid.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
+            let lines = last_line_end(valid).map_or(0, |at| at + 1);
             (std::str::from_utf8(&valid[..lines]).expect("cut after a line"), false)
         }
     };
     let mut count = 0;
-    for line in text.lines() {
+    for line in with_line_feeds(Cow::Borrowed(text)).lines() {
         count += 1;
         if let Some(row) = row(line) {
             rows.push(row);
         } else if is_row(line) {
-            let shown: String = line.trim().chars().take(SHOWN).collect();
-            let problem = format!(
-                "'{shown}' is not six numbers with commas between; give ox,oy,oz,tx,ty,tz in this order (a header has these names)"
-            );
-            return Err(BadLine { number: count, problem });
+            return Err(BadLine { number: count, problem: problem_of(line) });
         }
     }
     if !is_text {
@@ -78,14 +91,34 @@ pub(super) fn decode(bytes: &[u8], rows: &mut Vec<[f64; 6]>) -> Result<u64, BadL
     Ok(count)
 }
 
-fn is_row(line: &str) -> bool {
-    let line = line.trim();
-    !line.is_empty() && !line.starts_with('#')
+/// What is wrong with a line that is no row.
+fn problem_of(line: &str) -> String {
+    let shown: String = line.trim().chars().take(SHOWN).collect();
+    let row = before_comment(line);
+    let has_six = |parts: &mut dyn Iterator<Item = &str>| parts.count() == COLUMNS.len();
+    let found = if has_six(&mut row.split(';')) {
+        "semicolons"
+    } else if has_six(&mut row.split('\t')) {
+        "tabs"
+    } else if has_six(&mut row.split_whitespace()) && !row.contains(',') {
+        "blanks"
+    } else {
+        return format!(
+            "'{shown}' is not six numbers with commas between; give ox,oy,oz,tx,ty,tz in this order (a header has these names)"
+        );
+    };
+    format!(
+        "'{shown}' has {found} between its numbers; give commas, and points within numbers (numpy.savetxt: delimiter=',')"
+    )
 }
 
-/// What stands between the commas, without blanks and quotes around it.
+fn is_row(line: &str) -> bool {
+    !before_comment(line).trim().is_empty()
+}
+
+/// What stands between the commas before a comment, without blanks and quotes around it.
 fn fields(line: &str) -> impl Iterator<Item = &str> {
-    line.split(',').map(|field| {
+    before_comment(line).split(',').map(|field| {
         let field = field.trim();
         let quoted = field.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
         quoted.map_or(field, str::trim)
@@ -93,10 +126,10 @@ fn fields(line: &str) -> impl Iterator<Item = &str> {
 }
 
 fn row(line: &str) -> Option<[f64; 6]> {
-    let mut words = fields(line).map(str::parse);
+    let mut words = fields(line).map(number);
     let mut row = [0.0; 6];
     for number in &mut row {
-        *number = words.next()?.ok()?;
+        *number = words.next()??;
     }
     words.next().is_none().then_some(row)
 }
@@ -126,6 +159,43 @@ mod tests {
         }
         let error = decode(b"1,2,3,4,5,6\n1,2,\xff,4,5,6\n", &mut Vec::new()).unwrap_err();
         assert_eq!((error.number, error.problem.contains("not text")), (2, true));
+    }
+
+    #[test]
+    fn a_separator_that_is_no_comma_is_named() {
+        for (line, found) in [
+            ("1;2;3;4;5;6", "semicolons"),
+            ("1,5;2,5;3,5;4;5;6 # Europe", "semicolons"),
+            ("1\t2\t3\t4\t5\t6", "tabs"),
+            ("1.0e0 2 3  4 5 6", "blanks"),
+        ] {
+            let error = decode(line.as_bytes(), &mut Vec::new()).unwrap_err();
+            let told = format!("has {found} between its numbers; give commas");
+            assert!(error.problem.contains(&told), "{}", error.problem);
+        }
+    }
+
+    #[test]
+    fn a_comment_may_follow_a_row() {
+        let mut rows = Vec::new();
+        assert_eq!(
+            decode(b"1,2,3,4,5,6 # the first\n\t# none\n1,2,3,4,5,1.#INF\n", &mut rows),
+            Ok(3)
+        );
+        assert_eq!((rows.len(), rows[0][5], rows[1][5]), (2, 6.0, f64::INFINITY));
+        assert_eq!(header(b"ox,oy,oz,tx,ty,tz # in metres\n1,2,3,4,5,6\n").1, 1);
+        assert!(decode(b"1,2,3,4,5, # six\n", &mut rows).is_err());
+    }
+
+    #[test]
+    fn lines_may_end_as_on_an_old_macintosh() {
+        let mut rows = Vec::new();
+        let text = b"ox,oy,oz,tx,ty,tz\r1,2,3,4,5,6\r\r7,8,9,0,1,2\roops";
+        assert_eq!((header(text), last_line_end(text)), ((18, 1), Some(45)));
+        assert_eq!(decode(&text[18..46], &mut rows), Ok(3));
+        assert_eq!(rows[1], [7.0, 8.0, 9.0, 0.0, 1.0, 2.0]);
+        assert_eq!(decode(&text[18..], &mut rows).unwrap_err().number, 4);
+        assert_eq!(parts(&text[18..], 1).len(), 4);
     }
 
     #[test]

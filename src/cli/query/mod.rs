@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::failure::{Failure, say};
-use super::options::{Built, EngineOptions, load_triangles};
+use super::options::{Built, EngineOptions, load_triangles, note_transparent};
 use super::outputs::{Outputs, STANDARD_OUTPUT, check_outputs, unprinted};
 use super::progress::with_rate;
 use crate::geometry::Ray;
@@ -27,7 +27,7 @@ use rows::{Format, Rows};
 
 const DETAILS: &str = "\
 Rays are rows of six numbers, ox,oy,oz,tx,ty,tz: an origin and a target. They are either lines of
-CSV (a header ox,oy,oz,tx,ty,tz, blank lines and lines that begin with # are skipped) or a NumPy array
+CSV (a header ox,oy,oz,tx,ty,tz, blank lines and what follows a # are skipped) or a NumPy array
 of shape (N, 6), float32 or float64, little-endian, saved as .npy. The answers are of the same kind
 and in the same order: a line 0 or 1 for each row, or an array of N uint8.
 
@@ -122,7 +122,8 @@ impl Query {
 
     fn answer(&self, mut rows: Rows, outputs: &[&Path]) -> Result<(), Failure> {
         let start = Instant::now();
-        let scene = load_triangles(&self.scene, outputs)?;
+        let mut scene = load_triangles(&self.scene, outputs)?;
+        note_transparent(&mut scene, "query");
         let load_seconds = start.elapsed().as_secs_f64();
         let Built { backend, seconds: build_seconds, .. } = self.engine.build(&scene)?;
         let start = Instant::now();

@@ -9,6 +9,7 @@ use super::csv::{self, BadLine};
 use super::npy::{self, Layout};
 use crate::cli::failure::Failure;
 use crate::measure::count;
+use crate::scene::text::{UTF_16, is_utf_16};
 
 /// Bytes that are read at once.
 const BLOCK_BYTES: usize = 4 << 20;
@@ -122,6 +123,8 @@ impl<'a> Rows<'a> {
                 "this is no .npy file: it does not begin with '\\x93NUMPY'; {}",
                 npy::SAVE_AGAIN
             )));
+        } else if is_utf_16(&rows.buffer) {
+            return Err(rows.bad(UTF_16));
         } else {
             (rows.used, rows.header_lines) = csv::header(&rows.buffer);
         }
@@ -133,7 +136,7 @@ impl<'a> Rows<'a> {
         self.fill()?;
         self.used = match self.format {
             Format::Csv if self.ended => self.buffer.len(),
-            Format::Csv => match self.buffer.iter().rposition(|&byte| byte == b'\n') {
+            Format::Csv => match csv::last_line_end(&self.buffer) {
                 Some(line_end) => line_end + 1,
                 None => return Err(self.bad("a line is longer than 4 MiB; give CSV or .npy")),
             },

@@ -35,6 +35,7 @@ impl Container<'_> {
         if !kinds.contains(&kind) {
             return Err(wrong("is of the wrong type"));
         }
+        let is_share = accessor.normalized;
         let size = kind.size() * dimensions.multiplicity();
         let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
         let (bytes, stride) = match accessor.buffer_view {
@@ -51,8 +52,16 @@ impl Container<'_> {
                 (from(bytes, offset, count, (stride, size)).ok_or_else(beyond)?, stride)
             }
         };
-        let mut elements =
-            Elements { bytes, stride, kind, size, count, replaced: HashMap::new(), others: &[] };
+        let mut elements = Elements {
+            bytes,
+            stride,
+            kind,
+            is_share,
+            size,
+            count,
+            replaced: HashMap::new(),
+            others: &[],
+        };
         if let Some(sparse) = &accessor.sparse {
             self.replace(root, sparse, &mut elements)?.ok_or_else(beyond)?;
             if elements.replaced.keys().any(|&element| element >= count) {
@@ -83,7 +92,8 @@ impl Container<'_> {
         let values = from(values, sparse.values.byte_offset.0, count, sizes);
         let (Some(bytes), Some(values)) = (indices, values) else { return Ok(None) };
         let (replaced, others) = (HashMap::new(), &[][..]);
-        let indices = Elements { bytes, stride: size, kind, size, count, replaced, others };
+        let indices =
+            Elements { bytes, stride: size, kind, is_share: false, size, count, replaced, others };
         elements.replaced = (0..count).map(|place| (indices.index(place), place)).collect();
         elements.others = values;
         Ok(Some(()))
@@ -93,13 +103,14 @@ impl Container<'_> {
     fn view(&self, root: &Root, view: Index<View>) -> Result<(&[u8], Option<usize>), Problem> {
         let index = view.value();
         let view = item(&root.buffer_views, index, "buffer view")?;
-        item(&root.buffers, view.buffer.value(), "buffer")?;
-        let buffer = &self.buffers[view.buffer.value()];
+        let buffer = self.buffer(view.buffer.value())?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
         let bytes = slice(buffer, start, view.byte_length.0).ok_or_else(|| {
             format!("buffer view {index} reaches beyond the end of its buffer: the file is damaged or cut short")
         })?;
-        Ok((bytes, view.byte_stride.as_ref().map(|stride| stride.0)))
+        // Some programs write 0 where there is none.
+        let stride = view.byte_stride.map(|stride| stride.0).filter(|&stride| stride > 0);
+        Ok((bytes, stride))
     }
 }
 
@@ -123,6 +134,8 @@ pub(super) struct Elements<'a> {
     bytes: &'a [u8],
     stride: usize,
     kind: ComponentType,
+    /// Whether integers stand for shares of the largest one.
+    is_share: bool,
     /// Bytes of one element.
     size: usize,
     pub(super) count: usize,
@@ -144,9 +157,22 @@ impl Elements<'_> {
         bytes
     }
 
-    /// A vector of three f32.
+    /// A vector of three numbers.
     pub(super) fn vector(&self, element: usize) -> Vec3 {
-        Vec3::from_array([0, 1, 2].map(|axis| f32::from_le_bytes(self.component(element, axis))))
+        Vec3::from_array([0, 1, 2].map(|axis| self.number(element, axis)))
+    }
+
+    fn number(&self, element: usize, component: usize) -> f32 {
+        let bytes = self.component(element, component);
+        let [first, second, ..] = bytes;
+        let (integer, largest): (f32, f32) = match self.kind {
+            ComponentType::I8 => (first.cast_signed().into(), i8::MAX.into()),
+            ComponentType::U8 => (first.into(), u8::MAX.into()),
+            ComponentType::I16 => (i16::from_le_bytes([first, second]).into(), i16::MAX.into()),
+            ComponentType::U16 => (u16::from_le_bytes([first, second]).into(), u16::MAX.into()),
+            _ => return f32::from_le_bytes(bytes),
+        };
+        if self.is_share { (integer / largest).max(-1.0) } else { integer }
     }
 
     /// An affine map of sixteen f32.

@@ -1,19 +1,32 @@
 //! What is refused, and what is said of what is not read.
 
-use ::gltf::json::{Root, material::Material};
+use ::gltf::json::{
+    Root,
+    material::Material,
+    mesh::{Primitive, Semantic},
+    validation::Checked,
+};
 
 use super::{Problem, has_triangles, material, mode};
 use crate::words::counted;
 
 /// The extensions that are read.
-const READ: [&str; 6] = [
+const READ: [&str; 7] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission",
     "KHR_materials_volume",
+    QUANTIZED,
 ];
+
+/// By this extension vectors are made of short integers.
+pub(super) const QUANTIZED: &str = "KHR_mesh_quantization";
+
+/// Extensions of how surfaces look: those that are not read leave plain colours.
+const LOOKS: [&str; 4] =
+    ["KHR_lights_", "KHR_materials_", "KHR_technique_webgl", "KHR_techniques_webgl"];
 
 /// Extensions of textures, which are left out anyway.
 const TEXTURES: [&str; 3] = ["KHR_texture_", "EXT_texture_", "MSFT_texture_"];
@@ -24,9 +37,8 @@ fn begins_with(name: &str, beginnings: &[&str]) -> bool {
 
 /// Refuses what changes the shape of things in a way we do not know.
 pub(super) fn check_extensions(root: &Root) -> Result<(), Problem> {
-    let harmless = |name: &str| {
-        begins_with(name, &TEXTURES) || begins_with(name, &["KHR_lights_", "KHR_materials_"])
-    };
+    let harmless =
+        |name: &str| begins_with(name, &TEXTURES) || begins_with(name, &LOOKS) || name == QUANTIZED;
     match root.extensions_required.iter().find(|name| !harmless(name)) {
         Some(name) => Err(format!(
             "the file needs the glTF extension {name}, which umbra does not read; export it without"
@@ -83,8 +95,15 @@ pub(super) fn notes(root: &Root) -> Vec<String> {
         ["absorbs", "absorb"],
         "light on the way through, which is left out",
     );
-    let shapeless = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    if shapeless.filter_map(|p| mode(p).ok()).any(|mode| !has_triangles(mode)) {
+    let primitives = || root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let is_coloured = |primitive: &Primitive| {
+        let mut attributes = primitive.attributes.keys();
+        attributes.any(|attribute| matches!(attribute, Checked::Valid(Semantic::Colors(_))))
+    };
+    if primitives().any(is_coloured) {
+        notes.push("the colours of vertices are left out: those of materials instead".to_owned());
+    }
+    if primitives().filter_map(|p| mode(p).ok()).any(|mode| !has_triangles(mode)) {
         notes.push("points and lines are left out".to_owned());
     }
     notes

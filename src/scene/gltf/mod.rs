@@ -26,7 +26,6 @@ use super::{
     load::{empty_draft, malformed, read_file},
     material::{Surroundings, from_extras},
     memory,
-    placement::Placement,
 };
 use container::Container;
 pub(super) use container::MAGIC;
@@ -40,7 +39,7 @@ pub(super) fn read(path: &Path) -> Result<Draft, SceneError> {
     draft.up = Some(DVec3::Y);
     (draft.choose_ambient, draft.choose_background) = (true, true);
     Container::open(path, &bytes)
-        .and_then(|container| Reader { container, draft }.read())
+        .and_then(|container| Reader { container, draft, shapeless: None }.read())
         .map_err(|problem| malformed(path, problem))
 }
 
@@ -50,12 +49,19 @@ type Problem = String;
 /// An item that the file names by index.
 fn item<'a, T>(list: &'a [T], index: usize, kind: &str) -> Result<&'a T, Problem> {
     list.get(index)
-        .ok_or_else(|| format!("{kind} {index} is used, but the file has only {}", list.len()))
+        .ok_or_else(|| format!("{kind} {index} is used, but the file has {}", too_few(list.len())))
+}
+
+/// How many there are, where one beyond them is asked for.
+fn too_few(count: usize) -> String {
+    if count == 0 { "none".to_owned() } else { format!("only {count}") }
 }
 
 struct Reader<'a> {
     container: Container<'a>,
     draft: Draft,
+    /// What was said of the first primitive without positions.
+    shapeless: Option<String>,
 }
 
 impl Reader<'_> {
@@ -67,7 +73,6 @@ impl Reader<'_> {
         // What has no material is plain grey.
         self.draft.materials.push(Default::default());
         let transforms = NodeTransforms::of(self.container.json, &root)?;
-        let counts = nodes::count_triangles(&root)?;
         let scene = match (root.scene, &root.scenes[..]) {
             (Some(scene), scenes) => item(scenes, scene.value(), "scene")?,
             (None, [first, ..]) => first,
@@ -78,7 +83,7 @@ impl Reader<'_> {
             }
         };
         self.read_extras(scene);
-        let count = counts.below(&scene.nodes);
+        let count = nodes::count_triangles(&root, &scene.nodes)?.below(&scene.nodes);
         memory::check(count)?;
         self.draft.triangles.reserve(count as usize);
         let mut waiting: Vec<(usize, DAffine3)> =
@@ -96,6 +101,9 @@ impl Reader<'_> {
                 self.read_light(&root, lights.light.value(), world)?;
             }
             waiting.extend(node.children.iter().flatten().rev().map(|n| (n.value(), world)));
+        }
+        if let Some(shapeless) = self.shapeless.filter(|_| count == 0) {
+            return Err(format!("{shapeless}, and nothing else is there; give it 'POSITION'"));
         }
         for note in left_out::notes(&root) {
             self.draft.note(note);
@@ -119,16 +127,20 @@ impl Reader<'_> {
         transforms: &NodeTransforms,
         world: DAffine3,
     ) -> Result<(), Problem> {
-        let Some(mesh) = node.mesh else { return Ok(()) };
-        let mesh = item(&root.meshes, mesh.value(), "mesh")?;
+        let Some(index) = node.mesh else { return Ok(()) };
+        let mesh = item(&root.meshes, index.value(), "mesh")?;
         let weights = node.weights.as_ref().or(mesh.weights.as_ref());
         let pose = Pose {
-            placement: Placement::new(world),
+            world,
             weights: weights.map_or(&[], |weights| &weights[..]),
             joints: self.joints(root, node, transforms)?,
         };
-        for primitive in &mesh.primitives {
-            if nodes::triangle_count(root, primitive)? > 0 {
+        for (place, primitive) in mesh.primitives.iter().enumerate() {
+            if !nodes::has_positions(primitive) && has_triangles(mode(primitive)?) {
+                let shapeless = nodes::problem_of(index.value(), place, "has no positions");
+                self.draft.note(format!("{shapeless}: it is left out"));
+                self.shapeless.get_or_insert(shapeless);
+            } else if nodes::triangle_count(root, primitive)? > 0 {
                 self.read_primitive(root, primitive, &pose)?;
             } else if has_triangles(mode(primitive)?) {
                 self.draft.note("a primitive has fewer than three corners: it is left out");
@@ -165,7 +177,7 @@ impl Reader<'_> {
                     ));
                 }
             };
-            Ok(transforms.world(joint.value()) * unbound)
+            Ok(transforms.world(joint.value())? * unbound)
         };
         skin.joints.iter().enumerate().map(joint).collect::<Result<_, Problem>>().map(Some)
     }
@@ -202,6 +214,14 @@ impl Reader<'_> {
             } else {
                 self.draft.triangles.push(vertices.triangle(corners, material as u32));
             }
+        }
+        if pose.weights.len() > primitive.targets.as_deref().unwrap_or_default().len() {
+            self.draft
+                .note("a mesh has more weights than morph targets: those beyond are left out");
+        }
+        if vertices.are_loose() {
+            self.draft
+                .note("corners of a skinned mesh hang on no joint: they stand where its node does");
         }
         if is_unbound {
             self.draft.note("a primitive of a skinned mesh has no joints and weights: it stands where its node does");
@@ -283,7 +303,10 @@ impl Reader<'_> {
             (Checked::Valid(Type::Spot), None) => {
                 return Err(format!("light {index} is a spot without a cone"));
             }
-            (Checked::Invalid, _) => return Err(format!("light {index} is of an unknown type")),
+            (Checked::Invalid, _) => {
+                self.draft.note(format!("light {index} is of an unknown type: it is left out"));
+                return Ok(());
+            }
         });
         if lamp.range.is_some() {
             self.draft.note("the range of lights is left out: they reach everywhere");
@@ -295,7 +318,7 @@ impl Reader<'_> {
 fn mode(primitive: &Primitive) -> Result<Mode, Problem> {
     match primitive.mode {
         Checked::Valid(mode) => Ok(mode),
-        Checked::Invalid => Err("a primitive has an unknown mode".to_owned()),
+        Checked::Invalid => Err("has an unknown mode; give one from 0 to 6".to_owned()),
     }
 }
 

@@ -56,11 +56,15 @@ impl NodeTransforms {
         Ok(transforms)
     }
 
-    /// From the node to the world, along its parents: a skin names joints wherever they stand. No node is below itself,
-    /// as [`count_triangles`] has made sure.
-    pub(super) fn world(&self, node: usize) -> DAffine3 {
-        let above = std::iter::successors(self.parents[node], |&parent| self.parents[parent]);
-        above.fold(self.local(node), |world, parent| self.local(parent) * world)
+    /// From the node to the world, along its parents: a skin names joints wherever they stand, even where
+    /// [`count_triangles`] does not come.
+    pub(super) fn world(&self, node: usize) -> Result<DAffine3, Problem> {
+        let (mut world, mut top) = (self.local(node), node);
+        for _ in 0..self.parents.len() {
+            let Some(parent) = self.parents[top] else { return Ok(world) };
+            (world, top) = (self.local(parent) * world, parent);
+        }
+        Err(format!("node {top} is below itself"))
     }
 
     /// From the node to its parent.
@@ -104,11 +108,12 @@ impl Counts {
     }
 }
 
-/// Counts what every node holds; refuses cycles.
-pub(super) fn count_triangles(root: &Root) -> Result<Counts, Problem> {
+/// Counts what these nodes and those below them hold; refuses cycles.
+pub(super) fn count_triangles(root: &Root, nodes: &[Index<Node>]) -> Result<Counts, Problem> {
     let mut counts: Vec<Option<Count>> = vec![None; root.nodes.len()];
     let mut on_path = vec![false; root.nodes.len()];
-    for start in 0..root.nodes.len() {
+    for start in nodes.iter().map(Index::value) {
+        item(&root.nodes, start, "node")?;
         let mut waiting = vec![start];
         while let Some(&node) = waiting.last() {
             let children = root.nodes[node].children.as_deref().unwrap_or_default();
@@ -137,7 +142,10 @@ pub(super) fn count_triangles(root: &Root) -> Result<Counts, Problem> {
 fn count_node(root: &Root, node: usize, counts: &[Option<Count>]) -> Result<Count, Problem> {
     let mut count = Count { triangles: 0, placements: 1 };
     if let Some(mesh) = root.nodes[node].mesh {
-        for primitive in &item(&root.meshes, mesh.value(), "mesh")?.primitives {
+        for (place, primitive) in
+            item(&root.meshes, mesh.value(), "mesh")?.primitives.iter().enumerate()
+        {
+            mode(primitive).map_err(|problem| problem_of(mesh.value(), place, &problem))?;
             let triangles = triangle_count(root, primitive)? as u64;
             count.triangles = count.triangles.saturating_add(triangles);
         }
@@ -153,12 +161,22 @@ fn count_node(root: &Root, node: usize, counts: &[Option<Count>]) -> Result<Coun
     Ok(count)
 }
 
+/// Whether a primitive says where its corners are.
+pub(super) fn has_positions(primitive: &Primitive) -> bool {
+    primitive.attributes.contains_key(&Checked::Valid(Semantic::Positions))
+}
+
 /// How many triangles the primitive is made of.
 pub(super) fn triangle_count(root: &Root, primitive: &Primitive) -> Result<usize, Problem> {
+    let mode = mode(primitive)?;
     let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions)).copied();
-    let vertices = match primitive.indices.or(positions) {
-        Some(accessor) => item(&root.accessors, accessor.value(), "accessor")?.count.0,
-        None => return Err("a primitive has no positions".to_owned()),
-    };
-    Ok(triangles_in(mode(primitive)?, vertices as usize))
+    let Some(positions) = positions else { return Ok(0) };
+    let corners = primitive.indices.unwrap_or(positions);
+    let corners = item(&root.accessors, corners.value(), "accessor")?.count.0;
+    Ok(triangles_in(mode, corners as usize))
+}
+
+/// Says which primitive has a problem, of the mesh of that index.
+pub(super) fn problem_of(mesh: usize, primitive: usize, problem: &str) -> Problem {
+    format!("primitive {primitive} of mesh {mesh} {problem}")
 }

@@ -8,13 +8,23 @@ use ::gltf::json::{
 };
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-use super::{Problem, container::Container, elements::Elements};
+use super::{Problem, container::Container, elements::Elements, left_out::QUANTIZED, too_few};
 use crate::scene::{DraftTriangle, placement::Placement};
 use crate::words::counted;
 
+/// What vectors are made of: f32, and with KHR_mesh_quantization short integers, too.
+const VECTOR_KINDS: [ComponentType; 5] = [
+    ComponentType::F32,
+    ComponentType::I8,
+    ComponentType::U8,
+    ComponentType::I16,
+    ComponentType::U16,
+];
+
 /// How the vertices of a mesh come into the world.
 pub(super) struct Pose<'a> {
-    pub(super) placement: Placement,
+    /// From its node.
+    pub(super) world: DAffine3,
     /// How much of each morph target is added.
     pub(super) weights: &'a [f32],
     /// Where each joint of its skin takes what hangs on it.
@@ -31,6 +41,8 @@ pub(super) struct Vertices<'a> {
     /// On which joints each vertex hangs, and by how much: four in each set.
     bonds: Vec<[Elements<'a>; 2]>,
     pose: &'a Pose<'a>,
+    /// The pose of whatever hangs on no joint.
+    placement: Placement,
 }
 
 impl<'a> Vertices<'a> {
@@ -44,8 +56,10 @@ impl<'a> Vertices<'a> {
             container.elements(root, index.value(), (dimensions, kinds), what)
         };
         let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
+        let is_quantized = root.extensions_used.iter().any(|name| name == QUANTIZED);
+        let numbers = &VECTOR_KINDS[..if is_quantized { VECTOR_KINDS.len() } else { 1 }];
         let vectors = |index: Option<Index<Accessor>>, what: &str| {
-            index.map(|at| read(at, Dimensions::Vec3, &[ComponentType::F32], what)).transpose()
+            index.map(|at| read(at, Dimensions::Vec3, numbers, what)).transpose()
         };
         let positions = vectors(attribute(Semantic::Positions), "positions")?
             .ok_or("a primitive has no positions")?;
@@ -62,7 +76,7 @@ impl<'a> Vertices<'a> {
         let mut targets = Vec::new();
         let stored = primitive.targets.as_deref().unwrap_or_default();
         // Without any, all are 0.
-        if !pose.weights.is_empty() && pose.weights.len() != stored.len() {
+        if !pose.weights.is_empty() && pose.weights.len() < stored.len() {
             return Err(format!(
                 "a mesh has {} for {}; give one for each",
                 counted(pose.weights.len() as u64, "weight"),
@@ -102,19 +116,31 @@ impl<'a> Vertices<'a> {
                     .find(|&joint| joint >= joints.len());
                 if let Some(joint) = beyond {
                     return Err(format!(
-                        "joint {joint} is used, but the skin has only {}",
-                        joints.len()
+                        "joint {joint} is used, but the skin has {}",
+                        too_few(joints.len())
                     ));
                 }
                 bonds.push([places, weights]);
             }
         }
-        Ok(Self { count, positions, normals, targets, bonds, pose })
+        let placement = Placement::new(pose.world);
+        Ok(Self { count, positions, normals, targets, bonds, pose, placement })
     }
 
     /// Whether they hang on joints.
     pub(super) fn are_bound(&self) -> bool {
         !self.bonds.is_empty()
+    }
+
+    /// Whether some of them hang on joints by nothing.
+    pub(super) fn are_loose(&self) -> bool {
+        self.are_bound() && (0..self.count).any(|vertex| self.hold(vertex) == 0.0)
+    }
+
+    /// By how much a vertex hangs on joints altogether: 1 but for rounding, if the file is sound.
+    fn hold(&self, vertex: usize) -> f64 {
+        let shares = |weights: &Elements| [0, 1, 2, 3].map(|at| weights.share(vertex, at));
+        self.bonds.iter().flat_map(|[_, weights]| shares(weights)).sum()
     }
 
     /// The triangle of three of them in the world.
@@ -129,7 +155,7 @@ impl<'a> Vertices<'a> {
                 let placements = corners.map(|vertex| Placement::new(self.bond(vertex, joints)));
                 Placement::place_each(&placements, &stored)
             }
-            _ => self.pose.placement.place(&stored),
+            _ => self.placement.place(&stored),
         }
     }
 
@@ -157,17 +183,19 @@ impl<'a> Vertices<'a> {
         }
     }
 
-    /// The mean of where its joints take it.
+    /// The mean of where its joints take it; where it hangs on none, where its node does.
     fn bond(&self, vertex: usize, joints: &[DAffine3]) -> DAffine3 {
+        let whole = self.hold(vertex);
+        if whole == 0.0 {
+            return self.pose.world;
+        }
         let mut mean = DAffine3 { matrix3: DMat3::ZERO, translation: DVec3::ZERO };
-        let mut whole = 0.0;
         for [places, weights] in &self.bonds {
             for at in 0..4 {
                 let (joint, weight) =
                     (joints[places.integer(vertex, at)], weights.share(vertex, at));
                 mean.matrix3 += weight * joint.matrix3;
                 mean.translation += weight * joint.translation;
-                whole += weight;
             }
         }
         // Weights are rounded: they may not add up to 1.

@@ -79,11 +79,24 @@ impl Walls {
         open
     }
 
-    /// Whether there are walls on all sides, and something within that is seen from there only. Those of a solid,
-    /// of whose inside there may be anything, look outwards.
+    /// Whether there are walls on all sides, and something within that is seen from there only.
     pub fn close_a_room(&self) -> bool {
         let is_closed = self.covered.iter().all(|&(_, covered)| covered >= WALLED);
-        is_closed && self.is_furnished && self.outwards <= SOLID * self.inwards
+        is_closed && self.is_furnished && !self.are_of_a_solid()
+    }
+
+    /// Those of a solid, of whose inside there may be anything, look outwards.
+    fn are_of_a_solid(&self) -> bool {
+        self.outwards > SOLID * self.inwards
+    }
+
+    /// Whether one looks from there into a room through the side that has no wall, which is beside it and not above.
+    fn show_a_room(&self, camera: &Camera) -> bool {
+        let is_before = |side: DVec3| {
+            side != self.nearest_side(camera.up)
+                && (camera.position - self.bounds.centre()).dot(side) > 0.0
+        };
+        self.open_side().is_some_and(is_before) && !self.are_of_a_solid()
     }
 
     /// Whether a point lies between them.
@@ -125,9 +138,11 @@ impl Walls {
         Camera::look_at(places[farthest], centre, up, FIELD_OF_VIEW.to_radians())
     }
 
-    /// For a camera in a closed room: a lamp under the ceiling that gives the floor beneath it this irradiance.
+    /// For a camera in a closed room, or before an open one: a lamp under the ceiling that gives the floor beneath it this
+    /// irradiance.
     pub fn lamp_for(&self, camera: &Camera, irradiance: Vec3) -> Option<Light> {
-        if !self.close_a_room() || !self.hold(camera.position) {
+        let is_within = self.close_a_room() && self.hold(camera.position);
+        if !is_within && !self.show_a_room(camera) {
             return None;
         }
         let up = self.nearest_side(camera.up);
