@@ -16,13 +16,15 @@ mod node;
 #[cfg(test)]
 mod tests;
 
+use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
 pub(crate) use node::{Child, Node};
 
 use super::eight::{Eight, WIDTH};
+use super::engine::{TestEach, TestEight};
 use crate::geometry::intersect::{RayLanes, TriangleTest};
-use crate::geometry::lanes::Lanes;
+use crate::geometry::lanes::{Kernel, Lanes};
 use crate::geometry::{Ray, TriangleId, Triangles};
 
 /// Eight triangles. Where there are fewer, the last one is repeated.
@@ -61,24 +63,13 @@ impl Cluster {
         ray: &Ray,
         lanes: &RayLanes<L>,
         triangles: &Triangles,
-        mut hit: impl FnMut(TriangleId) -> ControlFlow<()>,
+        hit: impl FnMut(TriangleId) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let mut first = 0;
-        while first < WIDTH {
-            let claims = T::claims::<L>(lanes, &self.corners.load(first));
-            let mut candidates = claims.certain | claims.open;
-            while candidates != 0 {
-                let lane = candidates.trailing_zeros();
-                candidates &= candidates - 1;
-                let id = self.ids[first + lane as usize];
-                let certain = claims.certain & (1 << lane) != 0;
-                if certain || T::settle(ray, &triangles.get(id), triangles.slack()) {
-                    hit(id)?;
-                }
-            }
-            first += L::COUNT;
-        }
-        ControlFlow::Continue(())
+        let (ids, wanted) = (&self.ids, |_| true);
+        let each =
+            TestEach::<T, L, _, _> { triangles, ray, lanes, ids, wanted, hit, test: PhantomData };
+        // In place: whoever asks is compiled for the lanes.
+        TestEight { eight: &self.corners, each }.run()
     }
 }
 
