@@ -9,6 +9,7 @@ pub use glam;
 pub mod cli;
 pub mod exact;
 pub mod geometry;
+mod large_pages;
 pub mod measure;
 pub mod occlusion;
 pub mod render;

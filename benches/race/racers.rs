@@ -60,6 +60,7 @@ pub fn least<T>(mut make: impl FnMut() -> T) -> (T, u64) {
 
 /// A structure of Embree's, and how it is asked.
 pub struct Built {
+    quality: Quality,
     ways: Vec<(String, Embree, Option<Sorted>)>,
     nanoseconds: u64,
 }
@@ -81,7 +82,7 @@ pub fn embrees(scene: &Scene) -> Vec<Built> {
             let asked = made.with_packets(width, coherent).ok()?;
             Some((format!("{mode} {way}"), asked, sorted))
         });
-        Some(Built { ways: ways.collect(), nanoseconds })
+        Some(Built { quality, ways: ways.collect(), nanoseconds })
     };
     BUILDS.into_iter().filter_map(build).collect()
 }
@@ -91,7 +92,7 @@ impl Built {
     pub fn racers<'a>(&'a self) -> Vec<Racer<'a>> {
         let racer = |(name, embree, sorted): &'a (String, Embree, Option<Sorted>)| {
             let kind = match *sorted {
-                None => Kind::Embree(embree),
+                None => Kind::Embree(embree, self.quality),
                 Some(sorted) => Kind::Sorted(embree, sorted, ByPlace::default()),
             };
             Racer::new(name.clone(), kind, self.nanoseconds)
@@ -149,7 +150,7 @@ pub struct Racer<'a> {
 }
 
 enum Kind<'a> {
-    Embree(&'a Embree),
+    Embree(&'a Embree, Quality),
     Sorted(&'a Embree, Sorted, ByPlace),
     Ours(&'a dyn Prepared, Box<dyn Shadows + 'a>),
 }
@@ -166,12 +167,12 @@ impl<'a> Racer<'a> {
         for run in runs {
             match self.kind {
                 Kind::Ours(..) => drop(black_box(run.queries.clone())),
-                Kind::Embree(_) | Kind::Sorted(..) => drop(black_box(run.rays.clone())),
+                Kind::Embree(..) | Kind::Sorted(..) => drop(black_box(run.rays.clone())),
             }
             let run = std::slice::from_ref(run);
             let start = process_time();
             let blocked = match &mut self.kind {
-                Kind::Embree(embree) => blocked_by_engine(*embree, run),
+                Kind::Embree(embree, _) => blocked_by_engine(*embree, run),
                 Kind::Sorted(embree, sorted, by_place) => by_place.blocked(*embree, *sorted, run),
                 Kind::Ours(_, worker) => blocked_by_worker(&mut **worker, run),
             };
@@ -184,13 +185,15 @@ impl<'a> Racer<'a> {
     /// What it took.
     pub fn figures(self) -> Figures {
         let bytes = match &self.kind {
-            Kind::Embree(embree) | Kind::Sorted(embree, ..) => embree.memory(),
+            Kind::Embree(embree, _) | Kind::Sorted(embree, ..) => embree.memory(),
             Kind::Ours(prepared, _) => prepared.memory(),
         };
         let sorted = matches!(self.kind, Kind::Sorted(..));
+        let low = matches!(self.kind, Kind::Embree(_, Quality::Low));
         Figures {
             embree: !matches!(self.kind, Kind::Ours(..)),
             sorted,
+            low,
             name: self.name,
             prepared: self.prepared,
             parts: self.parts,

@@ -20,6 +20,7 @@ use super::few::{self, FEW};
 use super::{Cluster, Clusters, Node, WIDTH};
 use crate::geometry::lanes::Available;
 use crate::geometry::{TriangleId, Triangles, is_finite};
+use crate::large_pages::vec_with_room;
 use crate::occlusion::Eight;
 
 /// Ranges with fewer triangles are split by one thread.
@@ -46,7 +47,8 @@ fn build_by_numbers(
         Item::new(triangles.corners()[id as usize], id)
     };
     let arranging = Arranging { arithmetic };
-    let mut items = vec![Item(Around::NOTHING); count];
+    let mut items = vec_with_room(count);
+    items.resize(count, Item(Around::NOTHING));
     let tree = if count < MANY {
         items.iter_mut().enumerate().for_each(|(number, slot)| *slot = item(number));
         if items.is_empty() {
@@ -65,7 +67,8 @@ fn build_by_numbers(
         let ids = std::array::from_fn(|lane| run[lane.min(run.len() - 1)].id());
         Cluster { corners: Eight::new(triangles, &ids, arithmetic), ids }
     };
-    let clusters: Vec<Cluster> = runs.into_par_iter().with_min_len(512).map(cluster).collect();
+    let mut clusters: Vec<Cluster> = vec_with_room(runs.len());
+    runs.into_par_iter().with_min_len(512).map(cluster).collect_into_vec(&mut clusters);
     let sum: f64 = nodes.iter().map(Node::sum_of_cluster_extents).sum();
     let typical_extent = (sum / clusters.len() as f64) as f32;
     Clusters { clusters, nodes, typical_extent }

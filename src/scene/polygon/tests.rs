@@ -1,4 +1,4 @@
-use std::{collections::HashSet, f64::consts::TAU, time::Instant};
+use std::{collections::HashSet, f64::consts::TAU};
 
 use glam::{DVec2, DVec3, IVec2};
 use proptest::prelude::*;
@@ -89,9 +89,16 @@ fn an_outline_that_crosses_itself_or_has_no_area_ends() {
     assert!(!triangulate(&polygon(&star)).is_empty());
 }
 
+/// How many boxes are looked at for each corner.
+fn looks_a_corner(polygon: &[DVec3]) -> usize {
+    let before = tree::LOOKS.get();
+    assert_eq!(triangulate(polygon).len(), polygon.len() - 2);
+    (tree::LOOKS.get() - before) / polygon.len()
+}
+
 /// A wall that winds round and round.
 #[test]
-fn the_work_grows_with_the_square_of_the_corners_at_most() {
+fn beside_an_ear_of_a_long_wall_few_corners_are_looked_at() {
     let spiral = |count: i32| {
         let side = |width: f64| {
             let at =
@@ -101,25 +108,21 @@ fn the_work_grows_with_the_square_of_the_corners_at_most() {
         let corners = side(1.0).chain(side(0.8).rev());
         polygon(&corners.map(|corner| corner.to_array()).collect::<Vec<_>>())
     };
-    let start = Instant::now();
-    assert_eq!(triangulate(&spiral(4000)).len(), 3998);
-    // It takes a fraction of a second; looking at all corners for every ear took 25.
-    assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+    let [short, long] = [1000, 8000].map(|count| looks_a_corner(&spiral(count)));
+    assert!(long < 3 * short, "{short} {long}");
 }
 
 /// A comb with its back below: at half of its corners it turns right, but beside each ear there are few of them.
 #[test]
-fn the_work_grows_little_faster_than_the_corners_of_a_long_outline() {
+fn beside_an_ear_of_a_long_comb_few_corners_are_looked_at() {
     let comb = |teeth: usize| {
         let (first, last) = ([0.0, -1.0], [2.0 * teeth as f64, -1.0]);
         // The last corner of the edge is a low one, so that ears reach from one end of the comb to the other.
         let edge = (0..2 * teeth - 1).rev().map(|at| [at as f64, (at % 2) as f64]);
         polygon(&[first, last].into_iter().chain(edge).collect::<Vec<_>>())
     };
-    let start = Instant::now();
-    assert_eq!(triangulate(&comb(60_000)).len(), 119_999);
-    // It takes a fraction of a second; looking at all corners that turn right for every ear took minutes.
-    assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+    let [short, long] = [1000, 16_000].map(|teeth| looks_a_corner(&comb(teeth)));
+    assert!(long < 3 * short, "{short} {long}");
 }
 
 /// Unit steps, counter-clockwise.

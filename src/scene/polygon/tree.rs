@@ -71,6 +71,8 @@ impl<'a> Corners<'a> {
         triangle: [DVec2; 3],
         is_wanted: &dyn Fn(usize) -> bool,
     ) -> bool {
+        #[cfg(test)]
+        LOOKS.set(LOOKS.get() + 1);
         if is_beside(self.boxes[node], triangle) {
             return false;
         }
@@ -79,6 +81,12 @@ impl<'a> Corners<'a> {
             None => [0, 1].iter().any(|side| self.any_below(2 * node + side, triangle, is_wanted)),
         }
     }
+}
+
+#[cfg(test)]
+thread_local! {
+    /// How many boxes this thread has looked at.
+    pub(super) static LOOKS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
 /// Whether nothing in the box is in or on the triangle, which turns left: it ends before, or all of it is on the right

@@ -22,6 +22,7 @@ use super::walk::MOST_DEPTH;
 use super::{Cube, MOST, NestedGrid, Node, SLOTS, Threads};
 use crate::geometry::lanes::Available;
 use crate::geometry::{Bounds, TriangleId, Triangles, is_finite};
+use crate::large_pages::vec_with_room;
 use crate::occlusion::Eight;
 use crate::occlusion::eight::WIDTH;
 
@@ -172,7 +173,9 @@ impl<'a> Sorter<'a> {
         let ids: Vec<TriangleId> = shared.filter(finite).copied().collect();
         let place = |corner: Vec3A| cube.place(corner.as_dvec3()).as_vec3a();
         let extent = |&id: &TriangleId| Extent::of(&triangles.corners()[id as usize].map(place));
-        let extents = ids.par_iter().with_min_len(threads.least()).map(extent).collect();
+        let mut extents = vec_with_room(ids.len());
+        let shared = ids.par_iter().with_min_len(threads.least());
+        shared.map(extent).collect_into_vec(&mut extents);
         Self { triangles, cube, around, ids, extents, threads }
     }
 
@@ -334,7 +337,9 @@ impl<'a> Sorter<'a> {
         let arithmetic = Available::newest();
         let (ids, _) = grid.order.as_chunks::<WIDTH>();
         let eight = |ids| Eight::new(self.triangles, ids, arithmetic);
-        grid.eights = ids.par_iter().with_min_len(self.threads.least()).map(eight).collect();
+        grid.eights = vec_with_room(ids.len());
+        let shared = ids.par_iter().with_min_len(self.threads.least());
+        shared.map(eight).collect_into_vec(&mut grid.eights);
         grid
     }
 
