@@ -51,7 +51,7 @@ pub(super) fn clip(ray: &Ray, min: DVec3, max: DVec3) -> Clip {
     if enter <= leave { Clip::Inside(enter, leave) } else { Clip::Outside }
 }
 
-/// How far a culler must look beyond exact geometry: `fraction` of its own resolution, and at least
+/// How far a culler must look beyond exact geometry: so much for its own resolution, and at least
 /// what f32 tests may err by on coordinates of this size.
 pub(super) fn padding(bounds: &Bounds, resolution: f64) -> f64 {
     /// Hits of tests that round count within 48 roundings of a triangle (`Triangles::slack`); a third more.
