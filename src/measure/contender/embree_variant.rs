@@ -20,6 +20,11 @@ pub enum VariantError {
         "'{0}' is no part of an Embree variant; join with dashes one of each: sse2, sse4.2, avx, avx2, avx512; low, medium, high; 1, 4, 8, 16; coherent. Or say default, or all"
     )]
     Part(String),
+    /// One of its kind was named before.
+    #[error(
+        "'{0}' is one too many of its kind in an Embree variant; give one instruction set, one quality and one width at most"
+    )]
+    Second(String),
     /// This CPU cannot.
     #[error("this CPU has no {0}; it has {here}", here = available().map(|isa| isa.to_string()).collect::<Vec<_>>().join(", "))]
     Isa(Isa),
@@ -129,23 +134,33 @@ impl FromStr for EmbreeVariant {
     type Err = VariantError;
 
     fn from_str(name: &str) -> Result<Self, VariantError> {
-        let mut options = EmbreeOptions::default();
         if name == "default" {
-            return Ok(Self(options));
+            return Ok(Self(EmbreeOptions::default()));
         }
+        let (mut isa, mut quality, mut width, mut coherent) = (None, None, None, None);
         for part in name.split('-') {
-            if let Some(isa) = Isa::ALL.into_iter().find(|isa| isa.to_string() == part) {
-                options.isa = Some(isa);
-            } else if let Ok(quality) = Quality::from_str(part, true) {
-                options.quality = quality;
-            } else if let Some(&width) = WIDTHS.iter().find(|&&width| name_of(width) == part) {
-                options.width = width;
-            } else if part == "coherent" {
-                options.coherent = true;
-            } else {
-                return Err(VariantError::Part(part.to_owned()));
+            let is_second =
+                if let Some(named) = Isa::ALL.into_iter().find(|isa| isa.to_string() == part) {
+                    isa.replace(named).is_some()
+                } else if let Ok(named) = Quality::from_str(part, true) {
+                    quality.replace(named).is_some()
+                } else if let Some(&named) = WIDTHS.iter().find(|&&width| name_of(width) == part) {
+                    width.replace(named).is_some()
+                } else if part == "coherent" {
+                    coherent.replace(true).is_some()
+                } else {
+                    return Err(VariantError::Part(part.to_owned()));
+                };
+            if is_second {
+                return Err(VariantError::Second(part.to_owned()));
             }
         }
+        let options = EmbreeOptions {
+            isa,
+            quality: quality.unwrap_or_default(),
+            width: width.unwrap_or_default(),
+            coherent: coherent.unwrap_or_default(),
+        };
         Self(options).check()
     }
 }
@@ -165,6 +180,19 @@ impl fmt::Display for EmbreeVariant {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_variant_has_one_of_each_kind() {
+        for (name, second) in [
+            ("low-high", "high"),
+            ("8-16", "16"),
+            ("sse2-avx2-8", "avx2"),
+            ("8-coherent-coherent", "coherent"),
+        ] {
+            let refused = name.parse::<EmbreeVariant>();
+            assert_eq!(refused, Err(VariantError::Second(second.to_owned())), "{name}");
+        }
+    }
 
     #[test]
     fn every_variant_of_this_cpu_is_known_by_its_name() {
