@@ -65,8 +65,8 @@ pub struct Built {
     nanoseconds: u64,
 }
 
-/// Embree over what is opaque, as shafts are, built and asked in each way that this CPU has. In robust mode and low quality, which are
-/// no longer ahead where sorting pays, rays are not sorted.
+/// Embree over what is opaque, as shafts are, built and asked in each way that this CPU has; in robust mode and low quality without
+/// sorted rays, to keep the race short.
 pub fn embrees(scene: &Scene) -> Vec<Built> {
     let opaque = (0..scene.triangles.opaque_count()).map(|id| scene.triangles.get(id));
     let opaque = Arc::new(Triangles::from_iter(opaque));

@@ -161,10 +161,9 @@ impl SceneBuilder {
     pub fn add(&mut self, mesh: Mesh) -> Result<u32, Error> {
         mesh.check()?;
         let geometry = self.geometry()?;
-        geometry.fill(VERTICES, RTCFormat::RTC_FORMAT_FLOAT3, mesh.vertices)?;
-        geometry.fill(INDICES, RTCFormat::RTC_FORMAT_UINT3, mesh.triangles)?;
-        let mask = mesh.mask;
-        self.attach(&geometry, mask)
+        geometry.fill(VERTICES, RTCFormat::RTC_FORMAT_FLOAT3, mesh.vertices.iter().copied())?;
+        geometry.fill(INDICES, RTCFormat::RTC_FORMAT_UINT3, mesh.triangles.iter().copied())?;
+        self.attach(&geometry, mesh.mask)
     }
 
     /// Adds triangles whose corners, three each in a row, Embree reads where they lie. Its number is how many were added before.
@@ -210,8 +209,8 @@ impl SceneBuilder {
             }
         }
         let own = |triangle| [3 * triangle, 3 * triangle + 1, 3 * triangle + 2];
-        let indices: Vec<[u32; 3]> = (0..corners.len() as u32).map(own).collect();
-        geometry.fill(INDICES, RTCFormat::RTC_FORMAT_UINT3, &indices)?;
+        let indices = (0..corners.len() as u32).map(own);
+        geometry.fill(INDICES, RTCFormat::RTC_FORMAT_UINT3, indices)?;
         self.attach(&geometry, mask.get())
     }
 
@@ -366,28 +365,28 @@ struct GeometryOwner {
 }
 
 impl GeometryOwner {
-    /// Copies `items` into a new buffer of Embree's.
+    /// Puts items into a new buffer of Embree's.
     fn fill<T: Copy>(
         &self,
         kind: RTCBufferType,
         format: RTCFormat,
-        items: &[[T; 3]],
+        items: impl ExactSizeIterator<Item = [T; 3]>,
     ) -> Result<(), Error> {
-        let (api, bytes) = (&self.device.library().api, size_of::<[T; 3]>());
+        let (api, bytes, count) = (&self.device.library().api, size_of::<[T; 3]>(), items.len());
         // SAFETY: the geometry is alive.
         let buffer: *mut c_void =
-            unsafe { api.rtcSetNewGeometryBuffer(self.raw, kind, 0, format, bytes, items.len()) };
-        if items.is_empty() {
+            unsafe { api.rtcSetNewGeometryBuffer(self.raw, kind, 0, format, bytes, count) };
+        if count == 0 {
             // Embree then has no buffer to show, or one of no use.
             return self.device.take_error();
         }
         if buffer.is_null() {
             return Err(unexplained(&self.device));
         }
-        // SAFETY: the buffer was made for as many items of that size, and nobody else knows it yet.
-        unsafe {
-            ptr::copy_nonoverlapping(items.as_ptr().cast::<u8>(), buffer.cast(), size_of_val(items))
-        };
+        for (place, item) in (0..count).zip(items) {
+            // SAFETY: the buffer was made for as many items of that size, and nobody else knows it yet.
+            unsafe { buffer.cast::<[T; 3]>().add(place).write_unaligned(item) };
+        }
         Ok(())
     }
 }
