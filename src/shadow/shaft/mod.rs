@@ -39,7 +39,7 @@ use order::SortByDirection;
 use source::Source;
 use walk::{Around, Walker};
 
-use super::stock::Stock;
+use super::stock::{Lent, Stock};
 use super::{Glass, Panes, ShadowQuery, Verdict, VerdictKind};
 use crate::geometry::Triangles;
 use crate::geometry::lanes::{Available, Lanes, LanesJob};
@@ -57,11 +57,9 @@ pub(super) struct Shafts {
     triangles: Arc<Triangles>,
     sources: Vec<Source>,
     /// None if the memory does not suffice.
-    clusters: Option<Arc<Clusters>>,
+    clusters: Option<Lent>,
     /// What is said then.
     aside: Option<String>,
-    /// Bytes of them, if nobody else counts them.
-    bytes: usize,
     /// Shafts among the transparent triangles, if there are any.
     glass: Option<Box<Self>>,
     /// Whether bundles that do not stay together are left to a light buffer.
@@ -73,20 +71,18 @@ pub(super) struct Shafts {
 }
 
 impl Shafts {
-    /// Groups the triangles; there is nothing to prepare for lights.
+    /// Divides the triangles; there is nothing to prepare for lights.
     pub fn new(stock: &Stock<'_>) -> Self {
-        let (clusters, bytes) = stock.clusters();
-        let glass = stock.glass().map(|(clusters, bytes)| {
-            Box::new(Self::among(stock, Some(clusters), bytes, false, None))
-        });
+        let clusters = stock.clusters();
+        let glass =
+            stock.glass().map(|glass| Box::new(Self::among(stock, Some(glass), false, None)));
         let leaves_spread = stock.verdicts.contains(VerdictKind::LightBuffer);
-        Self::among(stock, clusters, bytes, leaves_spread, glass)
+        Self::among(stock, clusters, leaves_spread, glass)
     }
 
     fn among(
         stock: &Stock<'_>,
-        clusters: Option<Arc<Clusters>>,
-        bytes: usize,
+        clusters: Option<Lent>,
         leaves_spread: bool,
         glass: Option<Box<Self>>,
     ) -> Self {
@@ -95,7 +91,6 @@ impl Shafts {
             triangles: stock.scene.triangles.clone(),
             sources: stock.scene.lights.iter().map(Source::new).collect(),
             clusters,
-            bytes,
             glass,
             leaves_spread,
             arithmetic: Available::newest(),
@@ -161,7 +156,7 @@ impl Shafts {
         told: Told<'_>,
         tally: &mut Tally,
     ) {
-        let Some(clusters) = &self.clusters else { return };
+        let Some(Lent { clusters, .. }) = &self.clusters else { return };
         let mut walker = self.walker();
         walker.begin();
         self.settle_with(&mut walker, clusters, light, queries, told, tally);
@@ -198,7 +193,13 @@ impl Verdict for Shafts {
     }
 
     fn memory(&self) -> usize {
-        self.bytes + self.glass.as_ref().map_or(0, |glass| glass.bytes)
+        let of = |shafts: &Self| shafts.clusters.as_ref().map_or(0, Lent::memory);
+        of(self) + self.glass.as_deref().map_or(0, of)
+    }
+
+    fn lazy_seconds(&self) -> f64 {
+        let of = |shafts: &Self| shafts.clusters.as_ref().map_or(0.0, Lent::lazy_seconds);
+        of(self) + self.glass.as_deref().map_or(0.0, of)
     }
 
     fn notes(&self) -> Vec<String> {
