@@ -6,15 +6,15 @@
 //!
 //! - `--lights N`: N lights in every scene; `common::lights` says which, and where those stand that are added.
 //! - `--every N`: only every Nth tile of each picture is answered. Preparation is still charged by the number of queries of
-//!   the whole picture; but what is built while queries are answered (by ours, clusters too) is charged to those that
-//!   are answered, so ours look dearer than they are.
+//!   the whole picture; but what is built while queries are answered (by `light-buffer` and `auto`) is charged to those that
+//!   are answered, so those look dearer than they are.
 //!
 //! The queries of each part of the picture go to all racers in turn, as the renderer asks them: tile by tile, and light by light
 //! within. Embree runs in every way that was ever the fastest: single rays and packets, coherent or
 //! not, default and robust, low, medium and high quality, and packets over rays that were sorted by place; the best one is the
 //! measure. It has what is opaque only, and reads triangles where they lie. Times are of this process's CPU, so what else the machine
 //! does disturbs little; the ratio to the best Embree is given for the whole, and its quartiles over the parts without
-//! what was prepared before, but with what ours build while they answer. Ours stand before a grid that is there already, for rays that see; the tables also have `auto` with the grid's
+//! preparation. Ours stand before a grid that is there already, for rays that see; the tables also have `auto` with the grid's
 //! building.
 
 #[path = "../common/mod.rs"]

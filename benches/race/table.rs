@@ -130,7 +130,7 @@ const RATED: [&str; 3] = ["shaft", "auto", "light-buffer"];
 /// Two tables of several races, and their means: who is how much faster, and what lies behind it.
 pub fn markdown(outcomes: &[Outcome], bounds: &Bounds) -> String {
     let mut lines = vec![
-        "| scene | queries | best Embree | ns | usual, ns | `shaft`, ns | `auto`, ns | ratio of `shaft` | quartiles | of `auto` | with the grid | over usual: `shaft`, `auto` |".to_owned(),
+        "| scene | queries | best Embree | ns | usual, ns | `shaft`, ns | `auto`, ns | ratio of `shaft` | quartiles, built | of `auto` | with the grid | over usual: `shaft`, `auto` |".to_owned(),
         format!("|{}", " --- |".repeat(12)),
     ];
     lines.extend(outcomes.iter().filter_map(ratios));

@@ -7,34 +7,14 @@ use super::{Budget, VerdictSet};
 use crate::occlusion::Clusters;
 use crate::scene::Scene;
 
-/// Bytes that clusters and their tree may take: to a triangle (about 56, and 61 where things are small and apart, if rays come to
-/// all), and besides.
-const CLUSTER_BYTES: [usize; 2] = [62, 4096];
+/// Bytes of clusters and their tree before they are built: to a triangle (they turn out to take about 51, and 56 where things are small
+/// and apart; to almost 90 where these are heaps of one triangle more than a cluster has), and besides.
+const CLUSTER_BYTES: [usize; 2] = [60, 1024];
 
-/// Bytes that clusters of so many triangles may take.
-fn most_bytes(triangles: usize) -> usize {
+/// Bytes that clusters of so many triangles are expected to take.
+fn estimate(triangles: usize) -> usize {
     let [a_triangle, besides] = CLUSTER_BYTES;
     a_triangle * triangles + besides
-}
-
-/// Clusters, which several verdicts may use.
-#[derive(Clone)]
-pub(super) struct Lent {
-    pub clusters: Arc<Clusters>,
-    /// Whether it is here that they are counted.
-    counts: bool,
-}
-
-impl Lent {
-    /// Bytes of what is made by now.
-    pub fn memory(&self) -> usize {
-        if self.counts { self.clusters.memory() } else { 0 }
-    }
-
-    /// Seconds that it took to make what was asked for.
-    pub fn lazy_seconds(&self) -> f64 {
-        if self.counts { self.clusters.lazy_seconds() } else { 0.0 }
-    }
 }
 
 /// The scene, the memory that is left, and what several verdicts use.
@@ -64,48 +44,66 @@ impl<'a> Stock<'a> {
         Self { budget: self.budget.clone(), verdicts, shared: self.shared.clone(), ..*self }
     }
 
-    /// The opaque triangles' clusters, if the memory suffices; whoever asks first counts them.
-    pub fn clusters(&self) -> Option<Lent> {
+    /// The opaque triangles' clusters, if the memory suffices; and their bytes, for whoever asks first.
+    pub fn clusters(&self) -> (Option<Arc<Clusters>>, usize) {
         let triangles = &self.scene.triangles;
         let count = triangles.opaque_count() as usize;
-        self.once(&self.shared.clusters, count, |bytes| Clusters::of_opaque(triangles, bytes))
+        self.once(&self.shared.clusters, count, || Clusters::new(triangles))
     }
 
-    /// Clusters of the transparent triangles, if there are any and the memory suffices; whoever asks first counts them.
-    pub fn glass(&self) -> Option<Lent> {
+    /// Clusters of the transparent triangles, if there are any and the memory suffices; and their bytes, for whoever asks first.
+    pub fn glass(&self) -> Option<(Arc<Clusters>, usize)> {
         let triangles = &self.scene.triangles;
         let count = triangles.len() - triangles.opaque_count() as usize;
         if count == 0 {
             return None;
         }
-        let make = |bytes| Clusters::of_transparent(triangles, bytes);
-        self.once(&self.shared.glass, count, make)
+        let make = || Clusters::of_transparent(triangles);
+        let (clusters, bytes) = self.once(&self.shared.glass, count, make);
+        Some((clusters?, bytes))
     }
 
-    /// Clusters of so many triangles, which are made by whoever asks first, within so many bytes.
+    /// Clusters of so many triangles, which are made by whoever asks first; only to them they cost bytes.
     fn once(
         &self,
         shared: &OnceLock<Option<Arc<Clusters>>>,
         count: usize,
-        make: impl FnOnce(usize) -> Clusters,
-    ) -> Option<Lent> {
-        let mut counts = false;
+        make: impl FnOnce() -> Clusters,
+    ) -> (Option<Arc<Clusters>>, usize) {
+        let mut bytes = 0;
         // `make` may take up other work while it waits for threads; none of that comes here, as one at a time prepares from a stock (see `Auto`).
         let clusters = shared.get_or_init(|| {
-            counts = true;
-            let bytes = most_bytes(count);
-            self.budget.take(bytes).then(|| Arc::new(make(bytes)))
+            let clusters = self.within_budget(count, make);
+            bytes = clusters.as_ref().map_or(0, |clusters| clusters.memory());
+            clusters
         });
-        clusters.clone().map(|clusters| Lent { clusters, counts })
+        (clusters.clone(), bytes)
     }
 
     /// What the user should know where there are no clusters.
     pub fn without_clusters(&self) -> String {
-        let bytes = most_bytes(self.scene.triangles.opaque_count() as usize);
+        let bytes = estimate(self.scene.triangles.opaque_count() as usize);
         let advice = self.budget.advice(bytes as u64);
         format!(
             "steps aside: the memory limit leaves too little for the triangles' clusters; {advice}"
         )
+    }
+
+    /// Clusters of so many triangles, if the memory suffices.
+    fn within_budget(
+        &self,
+        count: usize,
+        make: impl FnOnce() -> Clusters,
+    ) -> Option<Arc<Clusters>> {
+        let estimate = estimate(count);
+        if !self.budget.take(estimate) {
+            return None;
+        }
+        let clusters = make();
+        let bytes = clusters.memory();
+        let suffices = self.budget.take(bytes.saturating_sub(estimate));
+        self.budget.give_back(if suffices { estimate.saturating_sub(bytes) } else { estimate });
+        suffices.then(|| Arc::new(clusters))
     }
 
     /// The one light buffer of all sets of verdicts that have it.
@@ -133,22 +131,22 @@ mod tests {
     }
 
     #[test]
-    fn clusters_keep_within_the_memory_that_they_asked_for_however_many_they_are() {
+    fn clusters_that_turn_out_larger_than_estimated_are_paid_for_or_dropped() {
         let scene = heaps();
-        let most = most_bytes(scene.triangles.len());
-        let free = Clusters::new(&scene.triangles);
-        free.make_all();
-        assert!(free.memory() > most);
-        let stock = |bytes: usize| {
-            Stock::new(&scene, Arc::new(Budget::new(bytes as u64)), VerdictSet::NONE)
-        };
-        assert!(stock(most - 1).clusters().is_none());
-        let stock = stock(most);
-        let lent = stock.clusters().unwrap();
-        lent.clusters.make_all();
-        // What room there is, is used.
-        assert!((most - most / 50..=most).contains(&lent.memory()), "{} of {most}", lent.memory());
-        assert_eq!(stock.budget.left(), 0);
+        let estimate = estimate(scene.triangles.len());
+        let truth = Clusters::new(&scene.triangles).memory();
+        assert!(truth > estimate);
+        let stock =
+            |bytes| Stock::new(&scene, Arc::new(Budget::new(bytes as u64)), VerdictSet::NONE);
+        for bytes in [estimate, truth - 1] {
+            let stock = stock(bytes);
+            assert!(matches!(stock.clusters(), (None, 0)), "{bytes} of {truth} bytes");
+            assert_eq!(stock.budget.left(), bytes as u64);
+        }
+        let stock = stock(truth + 5);
+        let (clusters, bytes) = stock.clusters();
+        assert!(clusters.is_some() && bytes == truth);
+        assert_eq!(stock.budget.left(), 5);
     }
 
     #[test]
@@ -164,15 +162,15 @@ mod tests {
         let scene = Scene { triangles, ..crate::scene::load("jittered-dense").unwrap() };
         let stock = Stock::new(&scene, Arc::new(Budget::new(1 << 20)), VerdictSet::NONE);
         let other = stock.for_verdicts(VerdictSet::NONE);
-        for lend in [Stock::clusters, Stock::glass] {
-            let before = stock.budget.left();
-            let first = lend(&stock).unwrap();
-            let left = stock.budget.left();
-            assert_eq!(left, before - most_bytes(100) as u64);
-            assert!((1..=most_bytes(100)).contains(&first.memory()));
-            let second = lend(&other).unwrap();
-            assert!(Arc::ptr_eq(&first.clusters, &second.clusters) && second.memory() == 0);
-            assert_eq!(stock.budget.left(), left);
-        }
+        let (clusters, bytes) = stock.clusters();
+        let (glass, glass_bytes) = stock.glass().unwrap();
+        let left = stock.budget.left();
+        assert!(bytes > 0 && glass_bytes > 0);
+        assert_eq!(left, (1 << 20) - (bytes + glass_bytes) as u64);
+        let (same_clusters, nothing) = other.clusters();
+        assert!(Arc::ptr_eq(&clusters.unwrap(), &same_clusters.unwrap()) && nothing == 0);
+        let (same_glass, nothing) = other.glass().unwrap();
+        assert!(Arc::ptr_eq(&glass, &same_glass) && nothing == 0);
+        assert_eq!(stock.budget.left(), left);
     }
 }

@@ -10,9 +10,8 @@ use std::ops::Range;
 
 use glam::{Vec3, Vec4};
 
-use super::divide::{Around, Heap, Item, LEAST};
-use super::treelet::TREELET;
-use crate::geometry::{Bounds, TriangleId};
+use super::divide::{Around, Heap, Item};
+use super::few::FEW;
 
 /// Fewer items are divided one cut at a time: two passes over a grid of its own cost a range of these as much.
 pub(super) const MANY: usize = 4096;
@@ -27,38 +26,24 @@ const MOST_BITS: u32 = 15;
 const MOST_ALONG_BITS: u32 = 6;
 const MOST_ALONG: usize = 1 << MOST_ALONG_BITS;
 
+/// No part has fewer items: below that, every cut is weighed.
+const LEAST: usize = 64;
+
 /// Items in a tree of ranges.
 pub(super) struct Part {
     pub items: Range<usize>,
-    pub inside: Inside,
+    pub inside: Option<Box<[Part; 2]>>,
 }
 
-pub(super) enum Inside {
-    /// Two parts.
-    Parts(Box<[Part; 2]>),
-    /// Nothing else.
-    Nothing {
-        /// The box around its items.
-        around: Around,
-        /// Whether that is much larger than the cells that they are in.
-        is_loose: bool,
-    },
-}
-
-/// Fills `sorted`, part by part, with the triangles of as many items, each of which `item` gives by its number. The box is around
-/// their places, or somewhat larger.
-pub(super) fn sort(
-    sorted: &mut [TriangleId],
-    places: &Around,
-    item: impl Fn(usize) -> Item,
-    id: impl Fn(usize) -> TriangleId,
-) -> Part {
+/// Fills `sorted`, part by part, with as many items, each of which `item` gives by its number, twice. The box is around their places,
+/// or somewhat larger.
+pub(super) fn sort(sorted: &mut [Item], places: &Around, item: impl Fn(usize) -> Item) -> Part {
     let mut cells = Cells::new(sorted.len(), places);
     let cell_of: Vec<u16> = (0..sorted.len()).map(|number| cells.count(&item(number))).collect();
     let part = cells.divide(cells.all(), 0..sorted.len());
     for (number, &cell) in cell_of.iter().enumerate() {
         let place = &mut cells.next[usize::from(cell)];
-        sorted[*place as usize] = id(number);
+        sorted[*place as usize] = item(number);
         *place += 1;
     }
     part
@@ -135,7 +120,7 @@ impl Cells {
 
     /// Divides a region as far as that pays, and gives its items their range.
     fn divide(&mut self, region: Region, items: Range<usize>) -> Part {
-        if items.len() > TREELET
+        if items.len() > FEW
             && let Some(Cut { axis, at, count }) = self.best_cut(region)
         {
             let (mut left, mut right) = (region, region);
@@ -144,29 +129,16 @@ impl Cells {
             let middle = items.start + count;
             let inside =
                 [self.divide(left, items.start..middle), self.divide(right, middle..items.end)];
-            return Part { items, inside: Inside::Parts(Box::new(inside)) };
+            return Part { items, inside: Some(Box::new(inside)) };
         }
         let mut next = items.start as u32;
-        let mut around = Around::NOTHING;
         for (y, z) in region.rows() {
             for cell in self.row(y, z) + region.low[0]..self.row(y, z) + region.high[0] {
                 self.next[cell] = next;
                 next += self.counts[cell];
-                around.join(&self.boxes[cell]);
             }
         }
-        let is_loose = around.is_loose(&self.places_in(region));
-        Part { items, inside: Inside::Nothing { around, is_loose } }
-    }
-
-    /// The box of places that are in a region.
-    fn places_in(&self, Region { low, high }: Region) -> Around {
-        let corner = |at: [usize; 3]| {
-            let cells = Vec3::from(at.map(|at| at as f32)) / self.scale.truncate();
-            // A side that is not divided has no length, or is as long as all.
-            self.low.truncate() + Vec3::select(cells.is_finite_mask(), cells, Vec3::ZERO)
-        };
-        Around::from(Bounds { min: corner(low), max: corner(high) })
+        Part { items, inside: None }
     }
 
     /// The cheapest cut that leaves enough on both sides.
@@ -237,17 +209,16 @@ mod tests {
 
     /// Its smallest parts, having looked whether each consists of its two.
     fn leaves(part: &Part) -> Vec<Range<usize>> {
-        let Inside::Parts(inside) = &part.inside else { return vec![part.items.clone()] };
+        let Some(inside) = &part.inside else { return vec![part.items.clone()] };
         let [left, right] = &**inside;
         assert_eq!((left.items.start, right.items.end), (part.items.start, part.items.end));
         assert_eq!(left.items.end, right.items.start);
         [leaves(left), leaves(right)].concat()
     }
 
-    fn sorted(items: &[Item]) -> (Vec<TriangleId>, Part) {
-        let mut sorted = vec![TriangleId::MAX; items.len()];
-        let item = |number: usize| items[number];
-        let part = sort(&mut sorted, &places_of(items), item, |number| items[number].id());
+    fn sorted(items: &[Item]) -> (Vec<Item>, Part) {
+        let mut sorted = vec![Item(Around::NOTHING); items.len()];
+        let part = sort(&mut sorted, &places_of(items), |number| items[number]);
         (sorted, part)
     }
 
@@ -260,7 +231,7 @@ mod tests {
             prop_assert_eq!(part.items.clone(), 0..places.len());
             let leaves = leaves(&part);
             prop_assert!(leaves.len() == 1 || leaves.iter().all(|leaf| leaf.len() >= LEAST));
-            let mut ids = sorted;
+            let mut ids: Vec<u32> = sorted.iter().map(Item::id).collect();
             ids.sort_unstable();
             prop_assert_eq!(ids, (0..places.len() as u32).collect::<Vec<_>>());
         }
@@ -270,14 +241,12 @@ mod tests {
     fn heaps_are_parts_of_their_own() {
         let places: Vec<(u8, u8, u8)> =
             (0..900).map(|number| ([0, 90, 200][number % 3], 0, 7)).collect();
-        let items = items_at(&places);
-        let (sorted, part) = sorted(&items);
+        let (sorted, part) = sorted(&items_at(&places));
         let leaves = leaves(&part);
         assert_eq!(leaves.len(), 3);
-        let place = |id: TriangleId| items[id as usize].place().x;
         for leaf in leaves {
-            let first = place(sorted[leaf.start]);
-            assert!(sorted[leaf].iter().all(|&id| place(id) == first));
+            let first = sorted[leaf.start].place();
+            assert!(sorted[leaf].iter().all(|item| item.place().x == first.x));
         }
     }
 
@@ -285,12 +254,12 @@ mod tests {
     fn a_few_far_away_are_no_part_of_their_own() {
         let place = |number| if number < LEAST - 1 { (200, 0, 0) } else { (0, 7, 7) };
         let (_, part) = sorted(&items_at(&(0..900).map(place).collect::<Vec<_>>()));
-        assert!(matches!(part.inside, Inside::Nothing { .. }));
+        assert!(part.inside.is_none());
     }
 
     #[test]
     fn what_is_in_one_place_is_one_part() {
         let (_, part) = sorted(&items_at(&[(7, 7, 7); 500]));
-        assert!(matches!(part.inside, Inside::Nothing { .. }));
+        assert!(part.inside.is_none());
     }
 }

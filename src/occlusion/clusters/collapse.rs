@@ -14,67 +14,44 @@ use glam::Vec3;
 use super::{Child, Node, WIDTH};
 use crate::geometry::Bounds;
 
-/// A tree while it is built: two halves, or what is not divided here.
+/// A tree while it is built: two halves, or a cluster.
 pub(super) struct Half {
     bounds: Bounds,
-    inside: Inside,
+    inside: Option<Box<[Half; 2]>>,
     /// What is in it.
     items: Range<u32>,
     /// The least surface of all nodes in it, itself among them, if it takes at most 1, 2 … places.
     surface: [f32; WIDTH],
 }
 
-enum Inside {
-    Halves(Box<[Half; 2]>),
-    Whole(Whole),
-}
-
-/// What is not divided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Whole {
-    Cluster,
-    Treelet,
-}
-
 impl Half {
-    /// These items, which are not divided.
-    pub fn whole(whole: Whole, bounds: Bounds, items: Range<u32>) -> Self {
-        Self { bounds, inside: Inside::Whole(whole), items, surface: [0.0; WIDTH] }
+    /// A cluster of these items.
+    pub fn cluster(bounds: Bounds, items: Range<u32>) -> Self {
+        Self { bounds, inside: None, items, surface: [0.0; WIDTH] }
     }
 
     pub fn of(inside: [Self; 2]) -> Self {
         let [left, right] = &inside;
         let bounds = left.bounds.union(right.bounds);
         let items = left.items.start..right.items.end;
-        let opened: [f32; WIDTH] = std::array::from_fn(|last| least_surface(&inside, last + 1));
-        let as_node = half_area(bounds) + opened[WIDTH - 1];
-        let surface = opened.map(|opened| opened.min(as_node));
-        Self { bounds, inside: Inside::Halves(Box::new(inside)), items, surface }
-    }
-
-    /// How many treelets it has.
-    pub fn treelets(&self) -> u32 {
-        match &self.inside {
-            Inside::Halves(halves) => halves[0].treelets() + halves[1].treelets(),
-            Inside::Whole(whole) => u32::from(*whole == Whole::Treelet),
+        let as_node = half_area(bounds) + shared_surface(&inside, share(&inside, WIDTH), WIDTH);
+        let mut surface = [as_node; WIDTH];
+        for places in 2..=WIDTH {
+            let opened = shared_surface(&inside, share(&inside, places), places);
+            surface[places - 1] = opened.min(as_node);
         }
+        Self { bounds, inside: Some(Box::new(inside)), items, surface }
     }
 
     /// Puts it into places of a node: as a child, or what is inside.
     fn fill<'a>(&'a self, places: usize, children: &mut Vec<&'a Self>) {
         match &self.inside {
-            Inside::Halves(halves) if self.surface[places - 1] < self.surface[0] => {
-                fill_shared(halves, places, children);
+            Some(inside) if self.surface[places - 1] < self.surface[0] => {
+                fill_shared(inside, places, children);
             }
             _ => children.push(self),
         }
     }
-}
-
-/// The least surface of both in so many places; infinite if one has none.
-#[inline(always)]
-fn least_surface(inside: &[Half; 2], places: usize) -> f32 {
-    (1..places).fold(f32::INFINITY, |least, first| least.min(shared_surface(inside, first, places)))
 }
 
 /// Of so many places, how many the first is to take.
@@ -83,7 +60,6 @@ fn share(inside: &[Half; 2], places: usize) -> usize {
     (1..places).min_by(|&a, &b| surface(a).total_cmp(&surface(b))).expect("a place for each")
 }
 
-#[inline(always)]
 fn shared_surface([left, right]: &[Half; 2], first: usize, places: usize) -> f32 {
     left.surface[first - 1] + right.surface[places - first - 1]
 }
@@ -94,38 +70,33 @@ fn fill_shared<'a>(inside: &'a [Half; 2], places: usize, children: &mut Vec<&'a 
     inside[1].fill(places - first, children);
 }
 
-/// The nodes, the root first, which has the number `first`. `whole` is what items are that are not divided.
-pub(super) fn collapse(
-    tree: &Half,
-    first: u32,
-    mut whole: impl FnMut(Whole, &Range<u32>) -> Child,
-) -> Vec<Node> {
-    let mut nodes = Vec::new();
-    add_node(tree, first, &mut nodes, &mut whole);
-    nodes
+/// The nodes, the root first, and the items of each cluster in the order of their numbers.
+pub(super) fn collapse(tree: &Half) -> (Vec<Node>, Vec<Range<u32>>) {
+    let (mut nodes, mut clusters) = (Vec::new(), Vec::new());
+    add_node(tree, &mut nodes, &mut clusters);
+    nodes.shrink_to_fit();
+    (nodes, clusters)
 }
 
-fn add_node(
-    half: &Half,
-    first: u32,
-    nodes: &mut Vec<Node>,
-    whole: &mut impl FnMut(Whole, &Range<u32>) -> Child,
-) -> u32 {
+fn add_node(half: &Half, nodes: &mut Vec<Node>, clusters: &mut Vec<Range<u32>>) -> u32 {
     let number = nodes.len();
     nodes.push(Node::EMPTY);
     let mut children = Vec::with_capacity(WIDTH);
     match &half.inside {
-        Inside::Halves(halves) => fill_shared(halves, WIDTH, &mut children),
-        Inside::Whole(_) => children.push(half),
+        Some(inside) => fill_shared(inside, WIDTH, &mut children),
+        None => children.push(half),
     }
     for (slot, half) in children.into_iter().enumerate() {
         let child = match half.inside {
-            Inside::Halves(_) => Child::Node(add_node(half, first, nodes, whole)),
-            Inside::Whole(kind) => whole(kind, &half.items),
+            Some(_) => Child::Node(add_node(half, nodes, clusters)),
+            None => {
+                clusters.push(half.items.clone());
+                Child::Cluster(clusters.len() as u32 - 1)
+            }
         };
         nodes[number].set(slot, &half.bounds, child);
     }
-    first + number as u32
+    number as u32
 }
 
 fn half_area(bounds: Bounds) -> f32 {
@@ -141,7 +112,7 @@ mod tests {
 
     fn cluster(number: u32, place: [u8; 3]) -> Half {
         let min = Vec3::from(place.map(f32::from));
-        Half::whole(Whole::Cluster, Bounds { min, max: min + 1.0 }, number..number + 1)
+        Half::cluster(Bounds { min, max: min + 1.0 }, number..number + 1)
     }
 
     /// A tree over clusters in a row, cut where `cuts` say.
@@ -152,16 +123,6 @@ mod tests {
         let at = 1 + cuts.next().unwrap() % (places.len() - 1);
         let (left, right) = places.split_at(at);
         Half::of([tree(left, first, cuts), tree(right, first + at as u32, cuts)])
-    }
-
-    /// The nodes, and the items that are not divided, in the order of their numbers.
-    fn collapsed(tree: &Half) -> (Vec<Node>, Vec<Range<u32>>) {
-        let mut clusters = Vec::new();
-        let nodes = collapse(tree, 0, |_, items| {
-            clusters.push(items.clone());
-            Child::Cluster(clusters.len() as u32 - 1)
-        });
-        (nodes, clusters)
     }
 
     /// The surfaces of all nodes that are reached, and the items of clusters.
@@ -187,9 +148,9 @@ mod tests {
             cuts in prop::collection::vec(0usize..1000, 120),
         ) {
             let tree = tree(&places, 0, &mut cuts.into_iter());
-            let (nodes, clusters) = collapsed(&tree);
+            let (nodes, clusters) = collapse(&tree);
             let mut found = (0.0, Vec::new());
-            let area = if places.len() > 1 { half_area(tree.bounds) } else { 0.0 };
+            let area = if tree.inside.is_some() { half_area(tree.bounds) } else { 0.0 };
             reached(0, area, &nodes, &mut found);
             found.1.sort_unstable();
             prop_assert_eq!(found.1, (0..places.len() as u32).collect::<Vec<_>>());
@@ -204,7 +165,7 @@ mod tests {
     fn eight_clusters_are_one_node_however_the_tree_leans() {
         for cuts in [vec![0; 8], vec![6, 5, 4, 3, 2, 1, 0, 0], vec![3, 1, 0, 0, 1, 0, 0, 0]] {
             let places: Vec<[u8; 3]> = (0..8).map(|n| [n * 3, n * n, 1]).collect();
-            let (nodes, _) = collapsed(&tree(&places, 0, &mut cuts.into_iter()));
+            let (nodes, _) = collapse(&tree(&places, 0, &mut cuts.into_iter()));
             assert_eq!(nodes.len(), 1);
         }
     }
@@ -219,6 +180,6 @@ mod tests {
         let tree = Half::of([left, right]);
         let small = half_area(Bounds { min: Vec3::ZERO, max: Vec3::new(3.0, 1.0, 1.0) });
         assert_eq!(tree.surface[0], half_area(tree.bounds) + small);
-        assert_eq!(collapsed(&tree).0.len(), 2);
+        assert_eq!(collapse(&tree).0.len(), 2);
     }
 }

@@ -5,9 +5,6 @@ use glam::{Vec3, Vec3A, Vec4, Vec4Swizzles};
 use super::WIDTH;
 use crate::geometry::{Bounds, TriangleId};
 
-/// No treelet of several has fewer triangles, as many as a node of full clusters holds.
-pub(super) const LEAST: usize = 64;
-
 /// Bins in which a range of triangles is sorted to find where to cut it.
 const BINS: usize = 16;
 
@@ -27,14 +24,6 @@ impl Around {
             (2.0 * corner).clamp(Vec3::splat(f32::MIN), Vec3::splat(f32::MAX)).extend(0.0)
         };
         Self { low: twice(min), high: twice(max) }
-    }
-
-    /// Whether this, the box around items, is much larger than the box around their places.
-    pub fn is_loose(&self, places: &Self) -> bool {
-        /// As a part of its surface; where triangles are all alike, it is at least a half.
-        const LOOSE: f32 = 0.25;
-        // Places are twice as far apart.
-        0.25 * places.half_area() < LOOSE * self.half_area()
     }
 
     /// Where it begins along an axis.
@@ -69,12 +58,6 @@ impl Around {
 
     pub fn bounds(&self) -> Bounds {
         Bounds { min: self.low.xyz(), max: self.high.xyz() }
-    }
-}
-
-impl From<Bounds> for Around {
-    fn from(Bounds { min, max }: Bounds) -> Self {
-        Self { low: min.extend(0.0), high: max.extend(0.0) }
     }
 }
 
@@ -115,22 +98,17 @@ pub(super) struct Divided {
     pub sides: [Around; 2],
 }
 
-/// Moves one side's items to the front, such that either side has at least so many. There are twice as many, or more.
-pub(super) fn divide(items: &mut [Item], places: &Around, least: usize) -> Divided {
+/// Moves one side's items to the front. There are more than [`WIDTH`].
+pub(super) fn divide(items: &mut [Item], places: &Around) -> Divided {
     let (axis, extent) = places.longest();
     let slots = Slots { axis, low: places.low(axis), scale: BINS as f32 / extent };
     if slots.scale.is_finite()
-        && let Some(cut) = Cut::best(items, slots, least)
+        && let Some(cut) = Cut::best(items, slots)
     {
         return at_bin(items, slots, cut);
     }
     // All in one place, or so far apart that no box has a surface in f32.
-    divide_at(items, places, items.len() / 2)
-}
-
-/// Moves so many to the front, along the longest axis.
-pub(super) fn divide_at(items: &mut [Item], places: &Around, at: usize) -> Divided {
-    let (axis, _) = places.longest();
+    let at = items.len() / 2;
     items.select_nth_unstable_by(at, |a, b| a.place()[axis].total_cmp(&b.place()[axis]));
     let (left, right) = items.split_at(at);
     Divided { at, sides: [places_of(left), places_of(right)] }
@@ -217,7 +195,7 @@ struct Cut {
 
 impl Cut {
     /// The cheapest.
-    fn best(items: &[Item], slots: Slots, enough: usize) -> Option<Self> {
+    fn best(items: &[Item], slots: Slots) -> Option<Self> {
         let mut bins = [Bin::EMPTY; BINS];
         for item in items {
             let bin = &mut bins[slots.of(item)];
@@ -236,7 +214,7 @@ impl Cut {
             left.join(&bins[bin - 1]);
             let right = &right[bin];
             let cost = left.items.cost() + right.items.cost();
-            if left.items.count.min(right.items.count) >= enough && cost < least {
+            if left.items.count > 0 && right.items.count > 0 && cost < least {
                 least = cost;
                 best = Some(Self { bin, sides: [left.places, right.places] });
             }
@@ -267,14 +245,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nothing_is_lost_and_both_sides_have_enough(
-            places in prop::collection::vec((0u8..200, 0u8..20, 0u8..3), 2 * LEAST..1500),
-            least in 1..=LEAST,
+        fn nothing_is_lost_and_both_sides_have_some(
+            places in prop::collection::vec((0u8..200, 0u8..20, 0u8..3), WIDTH + 1..1500),
         ) {
             let mut items = items_at(&places);
             let around = places_of(&items);
-            let Divided { at, sides } = divide(&mut items, &around, least);
-            prop_assert!(at >= least && at <= items.len() - least);
+            let Divided { at, sides } = divide(&mut items, &around);
+            prop_assert!(at > 0 && at < items.len());
             for (index, item) in items.iter().enumerate() {
                 prop_assert!(holds(&sides[usize::from(index >= at)], item.place()));
             }
@@ -290,7 +267,7 @@ mod tests {
             (0..603).map(|number| (if number % 3 == 0 { 200 } else { 0 }, 0, 0)).collect();
         let mut items = items_at(&places);
         let around = places_of(&items);
-        assert_eq!(divide(&mut items, &around, 1).at, 402);
+        assert_eq!(divide(&mut items, &around).at, 402);
         assert!(items[..402].iter().all(|item| item.0.low.x == 0.0));
     }
 
@@ -298,6 +275,6 @@ mod tests {
     fn items_in_one_place_are_halved() {
         let mut items = items_at(&[(7, 7, 7); 320]);
         let around = places_of(&items);
-        assert_eq!(divide(&mut items, &around, 1).at, 160);
+        assert_eq!(divide(&mut items, &around).at, 160);
     }
 }

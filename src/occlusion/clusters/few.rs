@@ -4,7 +4,6 @@
 //!
 //! To sort so few is to count, for each, how many come before it, which vectors do without a branch.
 
-use super::WIDTH;
 use super::divide::{Around, Divided, Heap, Item, places_of};
 use crate::geometry::lanes::{Available, Lanes, LanesJob};
 
@@ -15,17 +14,11 @@ pub(super) const FEW: usize = 128;
 /// of them are one vector of AVX2; that leaves the place a 256th of the extent, or better.
 const KEY_BITS: u32 = 15;
 
-/// Divides [`FEW`] items or less, but more than a cluster has; between any two, or only between full clusters.
-pub(super) fn divide(
-    items: &mut [Item],
-    places: &Around,
-    only_full: bool,
-    arithmetic: Available,
-) -> Divided {
+/// Divides [`FEW`] items or less, but more than a cluster has.
+pub(super) fn divide(items: &mut [Item], places: &Around, arithmetic: Available) -> Divided {
     let sorted = sort(items, places, arithmetic);
-    let step = if only_full { WIDTH } else { 1 };
-    let best = if sorted { cheapest_cut(items, step) } else { None };
-    let at = best.unwrap_or((items.len() / 2).next_multiple_of(step));
+    let best = if sorted { cheapest_cut(items) } else { None };
+    let at = best.unwrap_or(items.len() / 2);
     let (left, right) = items.split_at(at);
     Divided { at, sides: [places_of(left), places_of(right)] }
 }
@@ -55,8 +48,8 @@ fn sort(items: &mut [Item], places: &Around, arithmetic: Available) -> bool {
     true
 }
 
-/// After how many items, a multiple of `step`; `None` if no cost is a number.
-fn cheapest_cut(items: &[Item], step: usize) -> Option<usize> {
+/// After how many items; `None` if no cost is a number.
+fn cheapest_cut(items: &[Item]) -> Option<usize> {
     let mut right = [0.0; FEW];
     let mut heap = Heap::EMPTY;
     for (number, item) in items.iter().enumerate().skip(1).rev() {
@@ -68,7 +61,7 @@ fn cheapest_cut(items: &[Item], step: usize) -> Option<usize> {
     for number in 1..items.len() {
         heap.add(&items[number - 1]);
         let cost = heap.cost() + right[number];
-        if cost < least && (step == 1 || number.is_multiple_of(step)) {
+        if cost < least {
             (best, least) = (Some(number), cost);
         }
     }
@@ -107,6 +100,7 @@ mod tests {
     use glam::Vec3A;
     use proptest::prelude::*;
 
+    use super::super::WIDTH;
     use super::*;
 
     /// Cubes that begin here along the first axis.
@@ -146,7 +140,7 @@ mod tests {
             let places: Vec<f32> = (first..40).map(far).collect();
             let mut items = items(&places);
             let around = places_of(&items);
-            let Divided { at, sides } = divide(&mut items, &around, false, Available::newest());
+            let Divided { at, sides } = divide(&mut items, &around, Available::newest());
             assert_eq!(at, 24 - usize::from(first));
             assert_eq!(sides.map(|side| side.longest().1), [4.0, 2.0]);
         }
@@ -156,18 +150,6 @@ mod tests {
     fn items_in_one_place_are_halved() {
         let mut items = items(&[7.0; 80]);
         let around = places_of(&items);
-        assert_eq!(divide(&mut items, &around, false, Available::newest()).at, 40);
-    }
-
-    #[test]
-    fn full_clusters_are_cut_between_full_ones_only_and_both_sides_have_some() {
-        for count in WIDTH + 1..=FEW {
-            for places in [vec![7.0; count], (0..count).map(|n| (n * n % 31) as f32).collect()] {
-                let mut items = items(&places);
-                let around = places_of(&items);
-                let at = divide(&mut items, &around, true, Available::newest()).at;
-                assert!(at > 0 && at < count && at.is_multiple_of(WIDTH), "{at} of {count}");
-            }
-        }
+        assert_eq!(divide(&mut items, &around, Available::newest()).at, 40);
     }
 }

@@ -2,8 +2,6 @@
 
 use glam::Vec3;
 
-use super::divide::LEAST;
-use super::treelet::TREELET;
 use super::*;
 use crate::geometry::{Bounds, Triangle, is_finite};
 
@@ -19,7 +17,7 @@ fn spread(count: usize) -> Vec<Triangle> {
 
 /// Adds what is found below a node, once for each time, having looked whether boxes are around it.
 fn find_below(clusters: &Clusters, node: u32, within: Bounds, found: &mut Vec<TriangleId>) {
-    let node = clusters.node(node);
+    let node = &clusters.nodes()[node as usize];
     for slot in (0..WIDTH).filter(|&slot| node.low[0][slot] <= node.high[0][slot]) {
         let [min, max] =
             [node.low, node.high].map(|corner| Vec3::from(corner.map(|values| values[slot])));
@@ -27,7 +25,7 @@ fn find_below(clusters: &Clusters, node: u32, within: Bounds, found: &mut Vec<Tr
         match node.child(slot) {
             Child::Node(inside) => find_below(clusters, inside, Bounds { min, max }, found),
             Child::Cluster(cluster) => {
-                let cluster = clusters.cluster(cluster);
+                let cluster = &clusters.all()[cluster as usize];
                 for lane in (0..WIDTH).filter(|&lane| !cluster.repeats(lane)) {
                     for corner in 0..3 {
                         let corner = cluster.corner(corner).map(|values| values[lane]);
@@ -49,17 +47,17 @@ fn assert_holds_finite_ones(triangles: &[Triangle]) {
         .collect();
     let all = |triangles: &[Triangle]| triangles.to_vec();
     for clusters in [
-        Clusters::new(&Triangles::new(all(triangles), []).into()),
-        Clusters::of_transparent(&Triangles::new([], all(triangles)).into(), usize::MAX),
+        Clusters::new(&Triangles::new(all(triangles), [])),
+        Clusters::of_transparent(&Triangles::new([], all(triangles))),
     ] {
         let mut found = Vec::new();
-        if let Some(root) = clusters.root() {
+        if !clusters.nodes().is_empty() {
             let everywhere = Bounds { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
-            find_below(&clusters, root, everywhere, &mut found);
+            find_below(&clusters, 0, everywhere, &mut found);
         }
         found.sort_unstable();
         assert_eq!(found, finite);
-        let ids = clusters.all().flat_map(|(_, cluster)| cluster.ids());
+        let ids = clusters.all().iter().flat_map(Cluster::ids);
         assert!(ids.into_iter().all(|id| is_finite(&triangles[*id as usize])));
     }
 }
@@ -127,67 +125,4 @@ fn triangles_that_are_not_finite_are_in_no_cluster_and_take_none_with_them() {
         }
     }
     assert_holds_finite_ones(&[[Vec3::NAN; 3]; 20]);
-}
-
-/// How many treelets are made.
-fn made(clusters: &Clusters) -> usize {
-    clusters.treelets.iter().filter(|treelet| treelet.made.get().is_some()).count()
-}
-
-#[test]
-fn what_nobody_asks_for_is_not_made() {
-    let clusters = Clusters::new(&Triangles::new(spread(100_000), []).into());
-    let before = (made(&clusters), clusters.memory());
-    assert!(before.0 < clusters.treelets.len() / 4);
-    let unmade = |clusters: &Clusters| {
-        clusters.treelets.iter().position(|treelet| treelet.made.get().is_none())
-    };
-    let number = (unmade(&clusters).unwrap() as u32) << WITHIN_BITS;
-    // Twice, and by several threads.
-    rayon::scope(|scope| {
-        for _ in 0..10 {
-            scope.spawn(|_| {
-                assert_eq!(clusters.node(number).child(0), clusters.node(number).child(0));
-            });
-        }
-    });
-    assert_eq!(made(&clusters), before.0 + 1);
-    assert!(clusters.memory() > before.1);
-    clusters.make_all();
-    assert_eq!(made(&clusters), clusters.treelets.len());
-}
-
-#[test]
-fn treelets_hold_what_makes_them_worth_a_node_and_no_more_than_numbers_tell() {
-    for count in COUNTS {
-        let clusters = Clusters::new(&Triangles::new(spread(count), []).into());
-        for treelet in clusters.treelets.iter().filter(|treelet| !treelet.items.is_empty()) {
-            let range = LEAST.min(count)..=TREELET;
-            assert!(range.contains(&treelet.items.len()), "{count}: {:?}", treelet.items);
-        }
-    }
-}
-
-#[test]
-fn clusters_are_full_where_memory_is_short_and_nothing_is_lost() {
-    // Heaps of nine, one more than a cluster has, and far apart.
-    let steps = Vec3::new(0.618_034, 0.754_877_7, 0.819_172_5);
-    let heap = |number| {
-        let place = 1e5 * (steps * number as f32).fract();
-        [[place, place + Vec3::X, place + Vec3::Y]; 9]
-    };
-    let triangles: Vec<Triangle> = (0..2000).flat_map(heap).collect();
-    let triangles = std::sync::Arc::new(Triangles::new(triangles, []));
-    let free = Clusters::new(&triangles);
-    free.make_all();
-    let least = 62 * triangles.len();
-    assert!(free.memory() > least + least / 4, "{} and {least}", free.memory());
-    let short = Clusters::of_opaque(&triangles, least);
-    short.make_all();
-    assert!(short.memory() <= least, "{} of {least}", short.memory());
-    let mut found = Vec::new();
-    let everywhere = Bounds { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
-    find_below(&short, short.root().unwrap(), everywhere, &mut found);
-    found.sort_unstable();
-    assert!(found.into_iter().eq(0..triangles.len() as TriangleId));
 }

@@ -8,9 +8,9 @@ use crate::shadow::{
     Combination, Method, Prepared, SelfShadow, VerdictKind, VerdictReport, VerdictSet,
 };
 
-/// Nanoseconds a triangle to divide triangles into treelets and group them into clusters, of all threads together, if queries come to
-/// all: near the most that was seen, as what is thought too cheap is built too early, and what it did cost is known only afterwards.
-const CLUSTERS: f64 = 150.0;
+/// Nanoseconds a triangle to group triangles into clusters, of all threads together: near the most that was seen, as what is thought
+/// too cheap is built too early, and what it did cost is known only afterwards.
+const CLUSTERS: f64 = 180.0;
 
 /// Nanoseconds a triangle to sort clusters by the directions of a light: a first guess, which what the first light took replaces.
 const LIGHT_MAP: f64 = 10.0;

@@ -2,7 +2,6 @@
 
 use super::Auto;
 use super::policy::{Choice, Observation, Reason};
-use crate::occlusion::Clusters;
 use crate::shadow::{Answer, ShadowQuery, ShadowTally, Shadows};
 
 /// Queries for which a choice stands: the time stamps and the choosing cost some hundred nanoseconds.
@@ -153,8 +152,8 @@ impl Drop for Worker<'_, '_> {
     }
 }
 
-/// Nanoseconds of answering, and of building. Clusters say what making them took. If answering made what a light sees grow, the second
-/// answering is the one that counts, and the first was building.
+/// Nanoseconds of answering, and of building. If answering made the candidate's structures grow, the second answering
+/// is the one that counts, and the first was building.
 fn timed(
     auto: &Auto<'_>,
     candidate: usize,
@@ -164,12 +163,11 @@ fn timed(
     let prepared = auto.prepared(candidate);
     let grows = auto.candidates[candidate].builds_for_lights();
     let bytes = if grows { prepared.memory() } else { 0 };
-    let (start, made) = ((auto.clock)(), Clusters::nanoseconds_here());
+    let start = (auto.clock)();
     answer();
     let first = (auto.clock)().saturating_sub(start);
     if !grows || prepared.memory() == bytes {
-        let making = (Clusters::nanoseconds_here() - made).min(first);
-        return (first - making, making);
+        return (first, 0);
     }
     let start = (auto.clock)();
     answer_again();

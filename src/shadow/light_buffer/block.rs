@@ -3,7 +3,7 @@
 
 use super::footprint::{Covered, FINE, Window, cover};
 use super::view::LightView;
-use crate::occlusion::Clusters;
+use crate::occlusion::Cluster;
 
 /// Cells to a cluster of a block, about: more cells make shorter lists, but a cluster is listed in more of them.
 const DENSITY: f64 = 0.25;
@@ -52,7 +52,7 @@ impl Block {
         face: usize,
         low: [f32; 2],
         side: f32,
-        clusters: &Clusters,
+        all: &[Cluster],
         members: &[u32],
     ) -> Self {
         let wanted = (DENSITY * members.len() as f64).sqrt();
@@ -65,7 +65,7 @@ impl Block {
         for &member in members {
             let start = covered.len() as u32;
             if let Some(depth) =
-                cover(view, &window, clusters.cluster(member), &mut covered, &mut full)
+                cover(view, &window, &all[member as usize], &mut covered, &mut full)
             {
                 listed.push((depth, member, start, covered.len() as u32));
             }

@@ -6,7 +6,7 @@ use super::LightBuffer;
 use super::block::{Asked, Block};
 use super::view::{LightView, View};
 use crate::geometry::{Bounds, Ray};
-use crate::occlusion::{Cluster, Clusters};
+use crate::occlusion::Cluster;
 use crate::scene::Light;
 
 /// Blocks along the side of a face of the cube.
@@ -34,7 +34,7 @@ pub(super) struct LightMap {
 
 impl LightMap {
     /// Sorts the clusters into blocks; `None` if the light is not one for a light buffer.
-    pub fn new(light: &Light, scene: &Bounds, clusters: &Clusters) -> Option<Self> {
+    pub fn new(light: &Light, scene: &Bounds, clusters: &[Cluster]) -> Option<Self> {
         let view = LightView::new(light, scene)?;
         let side = match view.view {
             View::Cube { .. } => CUBE_BLOCKS,
@@ -42,8 +42,8 @@ impl LightMap {
         };
         let blocks = view.faces() * side * side;
         let mut near = Vec::new();
-        let mut pairs: Vec<(u32, u32)> = Vec::new();
-        for (index, cluster) in clusters.all() {
+        let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(clusters.len() * 5 / 4);
+        for (index, cluster) in (0..).zip(clusters) {
             if !view.blocks_of(cluster, side, |block| pairs.push((block as u32, index))) {
                 near.push(index);
                 if near.len() > MOST_NEAR {
@@ -70,7 +70,7 @@ impl LightMap {
 
     /// What a ray asks; `None` if it cannot be answered here.
     #[inline(always)]
-    pub fn ask(&self, ray: &Ray, clusters: &Clusters, buffer: &LightBuffer) -> Option<Asked<'_>> {
+    pub fn ask(&self, ray: &Ray, clusters: &[Cluster], buffer: &LightBuffer) -> Option<Asked<'_>> {
         let place = self.view.place(ray)?;
         let along =
             |value: f32| (((value + 1.0) * (0.5 * self.side as f32)) as usize).min(self.side - 1);
@@ -90,7 +90,7 @@ impl LightMap {
         index: usize,
         face: usize,
         place: [usize; 2],
-        clusters: &Clusters,
+        clusters: &[Cluster],
         buffer: &LightBuffer,
     ) -> Option<Block> {
         let side = 2.0 / self.side as f32;

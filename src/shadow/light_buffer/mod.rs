@@ -29,7 +29,7 @@ use std::time::Instant;
 use block::{Asked, Block};
 use map::LightMap;
 
-use super::stock::{Lent, Stock};
+use super::stock::Stock;
 use super::{Budget, ShadowQuery, Verdict};
 use crate::exact::Exact;
 use crate::geometry::Triangles;
@@ -43,7 +43,7 @@ pub(super) struct LightBuffer {
     triangles: Arc<Triangles>,
     lights: Vec<Light>,
     /// None if the memory does not suffice.
-    clusters: Option<Lent>,
+    clusters: Option<Arc<Clusters>>,
     /// What is said then.
     aside: Option<String>,
     maps: Vec<OnceLock<Option<LightMap>>>,
@@ -63,11 +63,7 @@ impl LightBuffer {
     /// Groups the triangles; what lights see is made when they are asked.
     pub fn new(stock: &Stock<'_>) -> Self {
         let Stock { scene, budget, .. } = stock;
-        let clusters = stock.clusters();
-        if let Some(Lent { clusters, .. }) = &clusters {
-            // A light sees all of them, or none.
-            clusters.make_all();
-        }
+        let (clusters, bytes) = stock.clusters();
         Self {
             triangles: scene.triangles.clone(),
             lights: scene.lights.clone(),
@@ -78,7 +74,7 @@ impl LightBuffer {
             maps: scene.lights.iter().map(|_| OnceLock::new()).collect(),
             arithmetic: Available::newest(),
             budget: budget.clone(),
-            bytes: AtomicUsize::new(0),
+            bytes: AtomicUsize::new(bytes),
             block_bytes: AtomicUsize::new(0),
             block_members: AtomicUsize::new(0),
             nanoseconds: AtomicU64::new(0),
@@ -88,11 +84,11 @@ impl LightBuffer {
     }
 
     fn map(&self, light: usize) -> Option<&LightMap> {
-        let Lent { clusters, .. } = self.clusters.as_ref()?;
+        let clusters = self.clusters.as_ref()?;
         let make = || {
             let start = Instant::now();
             let bounds = self.triangles.bounds()?;
-            let map = LightMap::new(&self.lights[light], &bounds, clusters)?;
+            let map = LightMap::new(&self.lights[light], &bounds, clusters.all())?;
             let fits = self.admit(map.memory());
             self.nanoseconds.fetch_add(start.elapsed().as_nanos() as u64, Relaxed);
             fits.then_some(map)
@@ -141,8 +137,8 @@ impl LightBuffer {
         query: &ShadowQuery,
         tally: &mut Tally,
     ) -> Option<bool> {
-        let ray = &query.ray;
-        let Asked { keys, clusters: listed, last, fine, dark } = map.ask(ray, clusters, self)?;
+        let (all, ray) = (clusters.all(), &query.ray);
+        let Asked { keys, clusters, last, fine, dark } = map.ask(ray, all, self)?;
         if dark {
             return Some(true);
         }
@@ -162,10 +158,10 @@ impl LightBuffer {
                     break;
                 }
                 place += 1;
-                listed[place - 1]
+                clusters[place - 1]
             };
             tally.triangle_tests += WIDTH as u64;
-            let cluster = clusters.cluster(cluster);
+            let cluster = &all[cluster as usize];
             let stop = |_| ControlFlow::Break(());
             blocked = cluster.test_each::<Exact, L>(ray, &lanes, &self.triangles, stop).is_break();
         }
@@ -185,13 +181,13 @@ impl Verdict for LightBuffer {
             // Nothing is made for a light that nobody asks about.
             return;
         }
-        if let (Some(map), Some(Lent { clusters, .. })) = (self.map(light), &self.clusters) {
+        if let (Some(map), Some(clusters)) = (self.map(light), &self.clusters) {
             self.arithmetic.run(Settle { buffer: self, map, clusters, queries, settled, tally });
         }
     }
 
     fn memory(&self) -> usize {
-        self.bytes.load(Relaxed) + self.clusters.as_ref().map_or(0, Lent::memory)
+        self.bytes.load(Relaxed)
     }
 
     fn lazy_seconds(&self) -> f64 {
@@ -287,7 +283,7 @@ mod tests {
             Arc::new(Budget::new(u64::MAX)),
             VerdictSet::NONE,
         ));
-        let Lent { clusters, .. } = buffer.clusters.as_ref().unwrap();
+        let all = buffer.clusters.as_ref().unwrap().all();
         let (mut blockers, mut dark) = (0, 0);
         for (number, light) in scene.lights.iter().enumerate() {
             let map = buffer.map(number).expect("few clusters are near");
@@ -303,12 +299,12 @@ mod tests {
             let corners = corners.map(|(x, y, z)| position + 0.7 * Vec3::new(x, y, z));
             for origin in places.chain(corners) {
                 let ray = light.shadow_ray(origin);
-                let Some(asked) = map.ask(&ray, clusters, &buffer) else { continue };
+                let Some(asked) = map.ask(&ray, all, &buffer) else { continue };
                 let blocked = (0..scene.triangles.len() as u32)
                     .any(|id| certified::blocks(&ray, &scene.triangles.get(id)));
                 assert!(blocked || !asked.dark, "{ray:?} is in the light");
                 dark += u32::from(asked.dark);
-                for (number, cluster) in clusters.all() {
+                for (number, cluster) in (0u32..).zip(all) {
                     let blocks = |&id: &u32| certified::blocks(&ray, &scene.triangles.get(id));
                     if !cluster.ids().iter().any(blocks) {
                         continue;

@@ -144,7 +144,7 @@ mod tests {
 
         #[inline(always)]
         fn run<L: Lanes>(self) -> Self::Answer {
-            let clusters = Clusters::new(&Triangles::new([self.triangle], []).into());
+            let clusters = Clusters::new(&Triangles::new([self.triangle], []));
             let mut packets = self.packets;
             let mut all = OriginBox::EMPTY;
             for packet in &packets {
@@ -153,7 +153,7 @@ mod tests {
             let source = Source::Point(self.light);
             let ground = Ground::around(&source, &all, 10.0);
             let mut planes = Planes::EMPTY;
-            planes.set::<L>(&ground, clusters.cluster(0));
+            planes.set::<L>(&ground, &clusters.all()[0]);
             let mut around_each = Vec::new();
             for packet in &mut packets {
                 for (row, centre) in packet.iter_mut().zip(ground.centre.to_array()) {

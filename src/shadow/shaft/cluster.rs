@@ -51,7 +51,7 @@ impl Tests<'_, '_> {
     pub fn few<L: Lanes, const ALL: bool>(self, packet: usize, mut rays: u16, number: u32) {
         let Self { bundle, kept, ground, around, tally } = self;
         tally.triangle_tests += WIDTH as u64 * u64::from(rays.count_ones());
-        let cluster = around.clusters.cluster(number);
+        let cluster = &around.clusters.all()[number as usize];
         let planes = kept.of::<L>(ground, number, cluster);
         let mut blocked = 0;
         while rays != 0 {
@@ -98,7 +98,7 @@ impl<'a> Shadows<'a> {
         around: &'a Around<'_>,
         number: u32,
     ) -> Self {
-        let cluster = around.clusters.cluster(number);
+        let cluster = &around.clusters.all()[number as usize];
         let planes = kept.of::<L>(ground, number, cluster);
         let candidates = planes.candidates::<L>(&bundle.bases[part], &bundle.boxes[part]);
         Self { planes, cluster, candidates }

@@ -5,19 +5,10 @@ use crate::geometry::lanes::Lanes;
 use crate::occlusion::Cluster;
 
 /// Clusters whose planes are kept. 130 KiB.
-const KEPT: usize = 1 << KEPT_BITS;
-const KEPT_BITS: u32 = 8;
+const KEPT: usize = 256;
 
 /// No cluster has this number.
 const NO_CLUSTER: u32 = u32::MAX;
-
-/// Where the planes of a cluster are kept. Numbers are in runs, a treelet's each, with gaps between: by the golden ratio those of a run
-/// have places of their own, and other runs mostly others (Knuth, The Art of Computer Programming 3, 6.4).
-#[inline(always)]
-fn place_of(number: u32) -> usize {
-    const GOLDEN: u32 = 0x9e37_79b1;
-    (number.wrapping_mul(GOLDEN) >> (u32::BITS - KEPT_BITS)) as usize
-}
 
 /// Planes of clusters that were tested of late.
 pub(super) struct Kept {
@@ -44,7 +35,7 @@ impl Kept {
     /// The planes of a cluster, which has this number.
     #[inline(always)]
     pub fn of<L: Lanes>(&mut self, ground: &Ground, number: u32, cluster: &Cluster) -> &Planes {
-        let place = place_of(number);
+        let place = number as usize % KEPT;
         if self.clusters[place] != number {
             self.clusters[place] = number;
             self.planes[place].set::<L>(ground, cluster);

@@ -39,7 +39,7 @@ use order::SortByDirection;
 use source::Source;
 use walk::{Around, Walker};
 
-use super::stock::{Lent, Stock};
+use super::stock::Stock;
 use super::{Glass, Panes, ShadowQuery, Verdict, VerdictKind};
 use crate::geometry::Triangles;
 use crate::geometry::lanes::{Available, Lanes, LanesJob};
@@ -57,9 +57,11 @@ pub(super) struct Shafts {
     triangles: Arc<Triangles>,
     sources: Vec<Source>,
     /// None if the memory does not suffice.
-    clusters: Option<Lent>,
+    clusters: Option<Arc<Clusters>>,
     /// What is said then.
     aside: Option<String>,
+    /// Bytes of them, if nobody else counts them.
+    bytes: usize,
     /// Shafts among the transparent triangles, if there are any.
     glass: Option<Box<Self>>,
     /// Whether bundles that do not stay together are left to a light buffer.
@@ -71,18 +73,20 @@ pub(super) struct Shafts {
 }
 
 impl Shafts {
-    /// Divides the triangles; there is nothing to prepare for lights.
+    /// Groups the triangles; there is nothing to prepare for lights.
     pub fn new(stock: &Stock<'_>) -> Self {
-        let clusters = stock.clusters();
-        let glass =
-            stock.glass().map(|glass| Box::new(Self::among(stock, Some(glass), false, None)));
+        let (clusters, bytes) = stock.clusters();
+        let glass = stock.glass().map(|(clusters, bytes)| {
+            Box::new(Self::among(stock, Some(clusters), bytes, false, None))
+        });
         let leaves_spread = stock.verdicts.contains(VerdictKind::LightBuffer);
-        Self::among(stock, clusters, leaves_spread, glass)
+        Self::among(stock, clusters, bytes, leaves_spread, glass)
     }
 
     fn among(
         stock: &Stock<'_>,
-        clusters: Option<Lent>,
+        clusters: Option<Arc<Clusters>>,
+        bytes: usize,
         leaves_spread: bool,
         glass: Option<Box<Self>>,
     ) -> Self {
@@ -91,6 +95,7 @@ impl Shafts {
             triangles: stock.scene.triangles.clone(),
             sources: stock.scene.lights.iter().map(Source::new).collect(),
             clusters,
+            bytes,
             glass,
             leaves_spread,
             arithmetic: Available::newest(),
@@ -156,7 +161,7 @@ impl Shafts {
         told: Told<'_>,
         tally: &mut Tally,
     ) {
-        let Some(Lent { clusters, .. }) = &self.clusters else { return };
+        let Some(clusters) = &self.clusters else { return };
         let mut walker = self.walker();
         walker.begin();
         self.settle_with(&mut walker, clusters, light, queries, told, tally);
@@ -193,13 +198,7 @@ impl Verdict for Shafts {
     }
 
     fn memory(&self) -> usize {
-        let of = |shafts: &Self| shafts.clusters.as_ref().map_or(0, Lent::memory);
-        of(self) + self.glass.as_deref().map_or(0, of)
-    }
-
-    fn lazy_seconds(&self) -> f64 {
-        let of = |shafts: &Self| shafts.clusters.as_ref().map_or(0.0, Lent::lazy_seconds);
-        of(self) + self.glass.as_deref().map_or(0.0, of)
+        self.bytes + self.glass.as_ref().map_or(0, |glass| glass.bytes)
     }
 
     fn notes(&self) -> Vec<String> {

@@ -100,20 +100,22 @@ impl Walker {
         self.known = 0;
         self.rays_known = 0;
         self.steps.clear();
-        let Some(root) = around.clusters.root() else { return true };
-        if around.queries.count() < COMPANY as usize {
-            let asked = self.bundle.open[0];
-            self.go_alone::<L, ALL>(0, asked, root, around, tally);
+        if around.clusters.nodes().is_empty() {
             return true;
         }
-        self.steps.push(Step { part: 1, met: u16::MAX, node: root });
+        if around.queries.count() < COMPANY as usize {
+            let asked = self.bundle.open[0];
+            self.go_alone::<L, ALL>(0, asked, 0, around, tally);
+            return true;
+        }
+        self.steps.push(Step { part: 1, met: u16::MAX, node: 0 });
         while let Some(step) = self.steps.pop() {
             let index = usize::from(step.part);
             if !self.bundle.is_open(index) {
                 continue;
             }
             tally.cells += 1;
-            let node = around.clusters.node(step.node);
+            let node = &around.clusters.nodes()[step.node as usize];
             self.know(index, ground);
             let found = self.shafts[index].meets::<L>(node);
             if index < PACKETS {
@@ -252,7 +254,7 @@ impl Walker {
             self.rest.push(node);
             'ray: while let Some(node) = self.rest.pop() {
                 tally.cells += 1;
-                let node = around.clusters.node(node);
+                let node = &around.clusters.nodes()[node as usize];
                 let met = shaft.meets::<L>(node).met;
                 let mut clusters = met & node.clusters();
                 let mut nodes = met & !clusters;
@@ -260,7 +262,7 @@ impl Walker {
                     let slot = clusters.trailing_zeros() as usize;
                     clusters &= clusters - 1;
                     tally.triangle_tests += WIDTH as u64;
-                    let cluster = around.clusters.cluster(node.number(slot));
+                    let cluster = &around.clusters.all()[node.number(slot) as usize];
                     let hit = |triangle| {
                         self.bundle.meet::<ALL>(packet, 1 << lane, triangle);
                         if ALL { Continue(()) } else { Break(()) }

@@ -22,18 +22,18 @@ impl LanesJob for Case<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Answer {
-        let clusters = Clusters::new(&Triangles::new(self.triangles.iter().copied(), []).into());
+        let clusters = Clusters::new(&Triangles::new(self.triangles.iter().copied(), []));
         let mut all = OriginBox::EMPTY;
         for &origin in self.origins {
             all = all.union(OriginBox { low: origin, high: origin });
         }
         let ground = Ground::around(&self.source, &all, 1.0);
         let mut planes = Planes::EMPTY;
-        planes.set::<L>(&ground, clusters.cluster(0));
+        planes.set::<L>(&ground, &clusters.all()[0]);
         let mut said = Vec::new();
         for &origin in self.origins {
             let (certain, open) = planes.cast_on_one::<L>(origin - ground.centre);
-            let ids = clusters.cluster(0).ids();
+            let ids = clusters.all()[0].ids();
             let mut by_id = (0, 0);
             for (lane, id) in ids.iter().enumerate() {
                 by_id.0 |= (certain >> lane & 1) << id;
