@@ -28,6 +28,12 @@ impl Available {
         Self::all().last().expect("SSE arithmetic is everywhere")
     }
 
+    /// The newest that has vectors of short integers: AVX-512 of F and VL alone has none of 512 bits, and a compiler that may use those for
+    /// other things puts halves together and takes them apart.
+    pub fn newest_for_short_integers() -> Self {
+        Self::find(Arithmetic::Avx2).unwrap_or_else(Self::newest)
+    }
+
     /// Which one it is.
     pub fn arithmetic(self) -> Arithmetic {
         self.0

@@ -14,10 +14,10 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::cells::{self, MANY, Part};
-use super::collapse::{Half, collapse};
+use super::collapse::{Tree, collapse};
 use super::divide::{Around, Divided, Item, divide, places_of};
 use super::few::{self, FEW};
-use super::{Cluster, Clusters, Node, WIDTH};
+use super::{Cluster, Clusters, Node};
 use crate::geometry::lanes::Available;
 use crate::geometry::{TriangleId, Triangles, is_finite};
 use crate::large_pages::vec_with_room;
@@ -41,30 +41,31 @@ fn build_by_numbers(
     count: usize,
     id: impl Fn(usize) -> TriangleId,
 ) -> Clusters {
-    let arithmetic = Available::newest();
+    if count == 0 {
+        return Clusters::default();
+    }
     let item = |number| {
         let id = id(number);
         Item::new(triangles.corners()[id as usize], id)
     };
-    let arranging = Arranging { arithmetic };
     let mut items = vec_with_room(count);
     items.resize(count, Item(Around::NOTHING));
-    let tree = if count < MANY {
+    let known = if count < MANY {
         items.iter_mut().enumerate().for_each(|(number, slot)| *slot = item(number));
-        if items.is_empty() {
-            return Clusters::default();
-        }
-        let places = places_of(&items);
-        arranging.arrange(&mut items, &places, 0)
+        Known::Places(places_of(&items))
     } else {
         let places = Around::places_within(triangles.bounds().unwrap_or_default());
-        let part = cells::sort(&mut items, &places, item);
-        arranging.arrange_part(part, &mut items, 0)
+        Known::Part(cells::sort(&mut items, &places, item))
     };
+    let mut sorted = vec![0; count];
+    let all = Portion { items: &mut items, sorted: &mut sorted, first: 0, known };
+    let tree = Arranging { arithmetic: Available::newest_for_short_integers() }.tree(all);
+    drop(items);
     let (nodes, runs) = collapse(&tree);
+    let arithmetic = Available::newest();
     let cluster = |run: Range<u32>| {
-        let run = &items[run.start as usize..run.end as usize];
-        let ids = std::array::from_fn(|lane| run[lane.min(run.len() - 1)].id());
+        let run = &sorted[run.start as usize..run.end as usize];
+        let ids = std::array::from_fn(|lane| run[lane.min(run.len() - 1)]);
         Cluster { corners: Eight::new(triangles, &ids, arithmetic), ids }
     };
     let mut clusters: Vec<Cluster> = vec_with_room(runs.len());
@@ -74,68 +75,87 @@ fn build_by_numbers(
     Clusters { clusters, nodes, typical_extent }
 }
 
-/// Sorts items so that those of a cluster are in a row. `first` is the place of the first one among all.
+/// A portion of all triangles.
+struct Portion<'a> {
+    items: &'a mut [Item],
+    /// Where they are to be in the end, those of a cluster in a row.
+    sorted: &'a mut [TriangleId],
+    /// The place of the first one among all.
+    first: u32,
+    known: Known,
+}
+
+/// What is known of the places of some items.
+enum Known {
+    /// They are sorted in parts.
+    Part(Part),
+    /// The box around them, or one somewhat larger.
+    Places(Around),
+}
+
+/// Sorts triangles, moving their items about, and builds the tree over them.
 #[derive(Clone, Copy)]
 struct Arranging {
     arithmetic: Available,
 }
 
 impl Arranging {
-    /// The box is around their places, or somewhat larger.
-    fn arrange(self, items: &mut [Item], places: &Around, first: u32) -> Half {
-        let count = items.len();
-        if count <= WIDTH {
-            let mut around = Around::NOTHING;
-            for Item(item) in &*items {
-                around.join(item);
-            }
-            return Half::cluster(around.bounds(), first..first + count as u32);
+    /// The tree over a portion; of a large one, several threads build it.
+    fn tree(self, portion: Portion) -> Tree {
+        let count = portion.items.len();
+        if count < WORTH_A_THREAD {
+            let mut tree = Tree::with_room(count);
+            self.add(&mut tree, portion);
+            return tree;
         }
-        if count >= MANY {
-            let unsorted = items.to_vec();
-            let part = cells::sort(items, places, |number| unsorted[number]);
-            drop(unsorted);
-            if part.inside.is_some() {
-                return self.arrange_part(part, items, first);
-            }
-        }
-        let Divided { at, sides } = if count <= FEW {
-            few::divide(items, places, self.arithmetic)
-        } else {
-            divide(items, places)
-        };
-        let (left, right) = items.split_at_mut(at);
-        Half::of(both(
-            count,
-            || self.arrange(left, &sides[0], first),
-            || self.arrange(right, &sides[1], first + at as u32),
-        ))
+        let [left, right] = self.divide(portion);
+        let (left, right) = rayon::join(|| self.tree(left), || self.tree(right));
+        Tree::of([left, right])
     }
 
-    /// The same of items that are sorted in parts.
-    fn arrange_part(self, part: Part, items: &mut [Item], first: u32) -> Half {
-        let Some(inside) = part.inside else {
-            return self.arrange(items, &places_of(items), first);
+    /// Adds a portion to a tree.
+    fn add(self, tree: &mut Tree, portion: Portion) {
+        if portion.items.len() <= FEW {
+            return few::add(tree, portion.items, portion.sorted, portion.first, self.arithmetic);
+        }
+        let [left, right] = self.divide(portion);
+        self.add(tree, left);
+        let left = tree.last();
+        self.add(tree, right);
+        tree.join(left);
+    }
+
+    /// A portion of more than [`FEW`], in two.
+    fn divide(self, portion: Portion) -> [Portion; 2] {
+        let Portion { items, sorted, first, known } = portion;
+        let (at, [left_known, right_known]) = match known {
+            Known::Part(Part { inside: Some(inside), .. }) => parts(*inside),
+            Known::Part(_) => self.divide_unsorted(items, &places_of(items)),
+            Known::Places(places) => self.divide_unsorted(items, &places),
         };
-        let count = items.len();
-        let [left, right] = *inside;
-        let at = left.items.len();
-        let (left_items, right_items) = items.split_at_mut(at);
-        Half::of(both(
-            count,
-            || self.arrange_part(left, left_items, first),
-            || self.arrange_part(right, right_items, first + at as u32),
-        ))
+        let (left, right) = items.split_at_mut(at);
+        let (left_sorted, right_sorted) = sorted.split_at_mut(at);
+        let second = first + at as u32;
+        [
+            Portion { items: left, sorted: left_sorted, first, known: left_known },
+            Portion { items: right, sorted: right_sorted, first: second, known: right_known },
+        ]
+    }
+
+    /// Moves items about: how many are now to the left, and what is known of both sides.
+    fn divide_unsorted(self, items: &mut [Item], places: &Around) -> (usize, [Known; 2]) {
+        if items.len() >= MANY {
+            let unsorted = items.to_vec();
+            let part = cells::sort(items, places, |number| unsorted[number]);
+            if let Some(inside) = part.inside {
+                return parts(*inside);
+            }
+        }
+        let Divided { at, sides } = divide(items, places, self.arithmetic);
+        (at, sides.map(Known::Places))
     }
 }
 
-/// Does both, at once if it is about many items.
-fn both<T: Send>(
-    count: usize,
-    left: impl FnOnce() -> T + Send,
-    right: impl FnOnce() -> T + Send,
-) -> [T; 2] {
-    let (left, right) =
-        if count < WORTH_A_THREAD { (left(), right()) } else { rayon::join(left, right) };
-    [left, right]
+fn parts([left, right]: [Part; 2]) -> (usize, [Known; 2]) {
+    (left.items.len(), [left, right].map(Known::Part))
 }

@@ -10,11 +10,11 @@ use std::ops::Range;
 
 use glam::{Vec3, Vec4};
 
-use super::divide::{Around, Heap, Item};
+use super::divide::{Around, Heap, INTEGERS, Item};
 use super::few::FEW;
 
 /// Fewer items are divided one cut at a time: two passes over a grid of its own cost a range of these as much.
-pub(super) const MANY: usize = 4096;
+pub(super) const MANY: usize = 512;
 
 /// Items a cell, if they were spread evenly.
 const A_CELL: usize = 16;
@@ -97,8 +97,6 @@ impl Cells {
     /// The cell that an item is in, having counted it.
     #[inline(always)]
     fn count(&mut self, item: &Item) -> u16 {
-        /// A number below, added to this, stands in the last bits, rounded.
-        const INTEGERS: f32 = (1 << (f32::MANTISSA_DIGITS - 1)) as f32;
         let place = (item.place() - self.low) * self.scale - 0.5;
         let place = place.min(self.last).max(Vec4::ZERO) + INTEGERS;
         let [x, y, z, _] = place.to_array().map(|place| place.to_bits() as usize % MOST_ALONG);

@@ -3,10 +3,14 @@
 use glam::{Vec3, Vec3A, Vec4, Vec4Swizzles};
 
 use super::WIDTH;
+use crate::geometry::lanes::{Available, Lanes, LanesJob};
 use crate::geometry::{Bounds, TriangleId};
 
 /// Bins in which a range of triangles is sorted to find where to cut it.
 const BINS: usize = 16;
+
+/// A number from 0 up to this, added to it, stands in the last bits, rounded.
+pub(super) const INTEGERS: f32 = (1 << (f32::MANTISSA_DIGITS - 1)) as f32;
 
 /// A box in two vectors of four; the fourth coordinates mean nothing.
 #[derive(Clone, Copy)]
@@ -51,9 +55,11 @@ impl Around {
     }
 
     /// Half of its surface; 0 of nothing.
+    #[inline(always)]
     pub fn half_area(&self) -> f32 {
-        let Vec3 { x, y, z } = (self.high - self.low).xyz().max(Vec3::ZERO);
-        x * y + y * z + z * x
+        let extent = (self.high - self.low).max(Vec4::ZERO);
+        let sides = extent * extent.yzxw();
+        sides.x + sides.y + sides.z
     }
 
     pub fn bounds(&self) -> Bounds {
@@ -81,6 +87,12 @@ impl Item {
     pub fn place(&self) -> Vec4 {
         self.0.low + self.0.high
     }
+
+    /// Along an axis.
+    #[inline(always)]
+    pub fn place_along(&self, axis: usize) -> f32 {
+        self.0.low.as_ref()[axis] + self.0.high.as_ref()[axis]
+    }
 }
 
 /// The box around the places of items.
@@ -99,22 +111,39 @@ pub(super) struct Divided {
 }
 
 /// Moves one side's items to the front. There are more than [`WIDTH`].
-pub(super) fn divide(items: &mut [Item], places: &Around) -> Divided {
-    let (axis, extent) = places.longest();
-    let slots = Slots { axis, low: places.low(axis), scale: BINS as f32 / extent };
-    if slots.scale.is_finite()
-        && let Some(cut) = Cut::best(items, slots)
-    {
-        return at_bin(items, slots, cut);
+pub(super) fn divide(items: &mut [Item], places: &Around, arithmetic: Available) -> Divided {
+    arithmetic.run(Divide { items, places })
+}
+
+struct Divide<'a> {
+    items: &'a mut [Item],
+    places: &'a Around,
+}
+
+impl LanesJob for Divide<'_> {
+    type Answer = Divided;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Divided {
+        let Self { items, places } = self;
+        let (axis, extent) = places.longest();
+        let slots = Slots { axis, low: places.low(axis), scale: BINS as f32 / extent };
+        if slots.scale.is_finite()
+            && let Some(cut) = Cut::best(items, slots)
+        {
+            return at_bin(items, slots, cut);
+        }
+        // All in one place, or so far apart that no box has a surface in f32.
+        let at = items.len() / 2;
+        items
+            .select_nth_unstable_by(at, |a, b| a.place_along(axis).total_cmp(&b.place_along(axis)));
+        let (left, right) = items.split_at(at);
+        Divided { at, sides: [places_of(left), places_of(right)] }
     }
-    // All in one place, or so far apart that no box has a surface in f32.
-    let at = items.len() / 2;
-    items.select_nth_unstable_by(at, |a, b| a.place()[axis].total_cmp(&b.place()[axis]));
-    let (left, right) = items.split_at(at);
-    Divided { at, sides: [places_of(left), places_of(right)] }
 }
 
 /// Divides at the boundary of a bin.
+#[inline(always)]
 fn at_bin(items: &mut [Item], slots: Slots, cut: Cut) -> Divided {
     let mut front = 0;
     for index in 0..items.len() {
@@ -137,7 +166,11 @@ struct Slots {
 impl Slots {
     #[inline(always)]
     fn of(&self, item: &Item) -> usize {
-        (((item.place()[self.axis] - self.low) * self.scale) as usize).min(BINS - 1)
+        const LAST: f32 = (BINS - 1) as f32;
+        let slot = (item.place_along(self.axis) - self.low) * self.scale - 0.5;
+        let slot = if slot > 0.0 { slot } else { 0.0 };
+        let slot = if slot < LAST { slot } else { LAST };
+        (slot + INTEGERS).to_bits() as usize % BINS
     }
 }
 
@@ -195,12 +228,18 @@ struct Cut {
 
 impl Cut {
     /// The cheapest.
+    #[inline(always)]
     fn best(items: &[Item], slots: Slots) -> Option<Self> {
-        let mut bins = [Bin::EMPTY; BINS];
-        for item in items {
-            let bin = &mut bins[slots.of(item)];
+        // Neighbours are often in one bin, and wait for each other there; so every other one goes to bins of its own.
+        let mut bins = [[Bin::EMPTY; BINS]; 2];
+        for (number, item) in items.iter().enumerate() {
+            let bin = &mut bins[number % 2][slots.of(item)];
             bin.items.add(item);
             bin.places.join_place(item.place());
+        }
+        let [mut bins, others] = bins;
+        for (bin, other) in bins.iter_mut().zip(&others) {
+            bin.join(other);
         }
         let mut right = [Bin::EMPTY; BINS + 1];
         for bin in (1..BINS).rev() {
@@ -250,7 +289,7 @@ mod tests {
         ) {
             let mut items = items_at(&places);
             let around = places_of(&items);
-            let Divided { at, sides } = divide(&mut items, &around);
+            let Divided { at, sides } = divide(&mut items, &around, Available::newest());
             prop_assert!(at > 0 && at < items.len());
             for (index, item) in items.iter().enumerate() {
                 prop_assert!(holds(&sides[usize::from(index >= at)], item.place()));
@@ -267,7 +306,7 @@ mod tests {
             (0..603).map(|number| (if number % 3 == 0 { 200 } else { 0 }, 0, 0)).collect();
         let mut items = items_at(&places);
         let around = places_of(&items);
-        assert_eq!(divide(&mut items, &around).at, 402);
+        assert_eq!(divide(&mut items, &around, Available::newest()).at, 402);
         assert!(items[..402].iter().all(|item| item.0.low.x == 0.0));
     }
 
@@ -275,6 +314,6 @@ mod tests {
     fn items_in_one_place_are_halved() {
         let mut items = items_at(&[(7, 7, 7); 320]);
         let around = places_of(&items);
-        assert_eq!(divide(&mut items, &around).at, 160);
+        assert_eq!(divide(&mut items, &around, Available::newest()).at, 160);
     }
 }
