@@ -14,7 +14,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::cells::{self, MANY, Part};
-use super::collapse::{Tree, collapse};
+use super::collapse::{Nodes, Tree};
 use super::divide::{Around, Divided, Item, divide, places_of};
 use super::few::{self, FEW};
 use super::{Cluster, Clusters, Node};
@@ -61,7 +61,8 @@ fn build_by_numbers(
     let all = Portion { items: &mut items, sorted: &mut sorted, first: 0, known };
     let tree = Arranging { arithmetic: Available::newest_for_short_integers() }.tree(all);
     drop(items);
-    let (nodes, runs) = collapse(&tree);
+    let Nodes { mut nodes, clusters: runs } = tree.nodes();
+    nodes.shrink_to_fit();
     let arithmetic = Available::newest();
     let cluster = |run: Range<u32>| {
         let run = &sorted[run.start as usize..run.end as usize];
@@ -106,7 +107,7 @@ impl Arranging {
         if count < WORTH_A_THREAD {
             let mut tree = Tree::with_room(count);
             self.add(&mut tree, portion);
-            return tree;
+            return tree.collapsed();
         }
         let [left, right] = self.divide(portion);
         let (left, right) = rayon::join(|| self.tree(left), || self.tree(right));

@@ -215,7 +215,6 @@ mod tests {
     use glam::Vec3A;
     use proptest::prelude::*;
 
-    use super::super::collapse::collapse;
     use super::*;
 
     /// Cubes that begin here along the first axis.
@@ -272,7 +271,7 @@ mod tests {
             let mut sorted = vec![TriangleId::MAX; items.len()];
             let mut tree = Tree::default();
             add(&mut tree, &items, &mut sorted, 0, Available::newest());
-            let (_, clusters) = collapse(&tree);
+            let clusters = tree.nodes().clusters;
             prop_assert!(clusters.iter().all(|cluster| (1..=WIDTH).contains(&cluster.len())));
             prop_assert_eq!(clusters.iter().map(ExactSizeIterator::len).sum::<usize>(), items.len());
             sorted.sort_unstable();

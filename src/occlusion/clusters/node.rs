@@ -69,6 +69,16 @@ impl Node {
         self.children[slot] & !CLUSTER
     }
 
+    /// The same among others: so many nodes come before those that it is with, and so many clusters.
+    #[must_use]
+    pub fn moved(&self, nodes: u32, clusters: u32) -> Self {
+        let mut moved = self.clone();
+        for child in &mut moved.children {
+            *child += if *child & CLUSTER == 0 { nodes } else { clusters };
+        }
+        moved
+    }
+
     /// Of its clusters, the sum of the longest sides of the boxes.
     pub fn sum_of_cluster_extents(&self) -> f64 {
         let clusters = (0..WIDTH).filter(|&slot| self.children[slot] & CLUSTER != 0);
