@@ -10,7 +10,7 @@ use crate::shadow::{
 
 /// Nanoseconds a triangle to group triangles into clusters, of all threads together: near the most that was seen, as what is thought
 /// too cheap is built too early, and what it did cost is known only afterwards.
-const CLUSTERS: f64 = 180.0;
+const CLUSTERS: f64 = 120.0;
 
 /// Nanoseconds a triangle to sort clusters by the directions of a light: a first guess, which what the first light took replaces.
 const LIGHT_MAP: f64 = 10.0;
