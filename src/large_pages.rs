@@ -1,7 +1,7 @@
 //! Vectors whose memory the system may hand out in large pages.
 //!
 //! Building writes memory that was never touched, and the system clears it page by page at the first write: with pages of 4 KiB
-//! that is a sixth of the time in which clusters of a large scene are built. Embree asks for large pages too.
+//! that was a sixth of the time in which clusters of a large scene were built. Embree asks for large pages too.
 
 /// An empty vector with room for so many items.
 pub(crate) fn vec_with_room<T>(count: usize) -> Vec<T> {

@@ -1,8 +1,8 @@
 //! Grouping triangles into clusters, and clusters into nodes.
 //!
 //! Top down by the surface area heuristic (MacDonald & Booth 1990; Wald 2007): many triangles by the cells of a grid, several levels of the
-//! tree at once (`cells`), then in bins along the longest axis (`divide`), few of them exactly (`few`); then halves are put into nodes
-//! of eight (`collapse`). The counts that the heuristic weighs are clusters: a cluster costs the same however full it is. So most come out
+//! tree at once (`cells`), then in bins along the longest axis (`divide`); few of them are sorted along it, and every cut is weighed (`few`).
+//! Then halves are put into nodes of eight (`collapse`). The counts that the heuristic weighs are clusters: a cluster costs the same however full it is. So most come out
 //! full, but not where a few triangles are apart from the rest: cuts at multiples of eight took 4 bytes a triangle less, and 1.6 times
 //! the tests where things are small and apart.
 //!
@@ -23,7 +23,7 @@ use crate::geometry::{TriangleId, Triangles, is_finite};
 use crate::large_pages::vec_with_room;
 use crate::occlusion::Eight;
 
-/// Ranges with fewer triangles are split by one thread.
+/// Portions with fewer triangles are divided, and put into nodes, by one thread: what comes out depends on this, not on how many threads there are.
 const WORTH_A_THREAD: usize = 8192;
 
 /// Of these triangles, without those that are not finite: they block nothing, and no box is around a NaN.
@@ -57,11 +57,12 @@ fn build_by_numbers(
         let places = Around::places_within(triangles.bounds().unwrap_or_default());
         Known::Part(cells::sort(&mut items, &places, item))
     };
-    let mut sorted = vec![0; count];
+    let mut sorted = vec_with_room(count);
+    sorted.resize(count, 0);
     let all = Portion { items: &mut items, sorted: &mut sorted, first: 0, known };
-    let tree = Arranging { arithmetic: Available::newest_for_short_integers() }.tree(all);
+    let tree = Builder { arithmetic: Available::newest_for_short_integers() }.tree(all);
     drop(items);
-    let Nodes { mut nodes, clusters: runs } = tree.nodes();
+    let Nodes { mut nodes, runs } = tree.into_nodes();
     nodes.shrink_to_fit();
     let arithmetic = Available::newest();
     let cluster = |run: Range<u32>| {
@@ -88,7 +89,7 @@ struct Portion<'a> {
 
 /// What is known of the places of some items.
 enum Known {
-    /// They are sorted in parts.
+    /// They are a part of a grid, which may be divided further.
     Part(Part),
     /// The box around them, or one somewhat larger.
     Places(Around),
@@ -96,11 +97,11 @@ enum Known {
 
 /// Sorts triangles, moving their items about, and builds the tree over them.
 #[derive(Clone, Copy)]
-struct Arranging {
+struct Builder {
     arithmetic: Available,
 }
 
-impl Arranging {
+impl Builder {
     /// The tree over a portion; of a large one, several threads build it.
     fn tree(self, portion: Portion) -> Tree {
         let count = portion.items.len();

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use glam::{Vec3, Vec4};
 
-use super::divide::{Around, Heap, INTEGERS, Item};
+use super::divide::{Around, Heap, INTEGERS, Item, TO_FLOOR};
 use super::few::FEW;
 
 /// Fewer items are divided one cut at a time: two passes over a grid of its own cost a range of these as much.
@@ -97,7 +97,7 @@ impl Cells {
     /// The cell that an item is in, having counted it.
     #[inline(always)]
     fn count(&mut self, item: &Item) -> u16 {
-        let place = (item.place() - self.low) * self.scale - 0.5;
+        let place = (item.place() - self.low) * self.scale - TO_FLOOR;
         let place = place.min(self.last).max(Vec4::ZERO) + INTEGERS;
         let [x, y, z, _] = place.to_array().map(|place| place.to_bits() as usize % MOST_ALONG);
         let cell = self.row(y, z) | x;

@@ -2,11 +2,11 @@
 //!
 //! A node is visited by what meets its box, as often as its surface is large; so halves are put into nodes such that the surfaces of
 //! all nodes together are the least. What a half costs at best, if it may take one place in the node above it or several,
-//! follows from what its own halves cost (Ylitie, Karras & Laine 2017); 27 sums a half, made when it is. Opening the largest box
+//! follows from what its own halves cost (Ylitie, Karras & Laine 2017); 64 sums a half, made when it is, in rows of eight. Opening the largest box
 //! until a node is full leaves many nodes with few children: bundles visit a tenth more of them.
 //!
 //! Halves lie in a row, not each in memory of its own, which would cost a tenth of the time of building; and what one thread has built is
-//! put into nodes at once, while it is in a near cache. That makes a node of the whole of it, which is one of a thousand.
+//! put into nodes at once, while it is in a near cache. That forces a node around each such piece, one in a hundred and more.
 //!
 //! Ylitie, Karras, Laine: Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs. High Performance Graphics 2017.
 
@@ -18,16 +18,18 @@ use super::{Child, Node, WIDTH};
 use crate::geometry::Bounds;
 use crate::large_pages::vec_with_room;
 
-/// A tree while it is built, as far as one thread builds it: halves in a row, each after what is in it, the whole one last.
+/// A tree while it is built: halves in a row, each after what is in it, the whole one last. Or a single one that stands for trees that were
+/// built apart, or for nodes.
 #[derive(Default)]
 pub(super) struct Tree {
     halves: Vec<Half>,
 }
 
-/// Two halves, or what is not divided any more.
+/// A part of the tree.
 struct Half {
     bounds: Bounds,
-    /// The least surface of all nodes in it, itself among them, if it takes at most 1, 2 … places.
+    /// The least surface of all nodes in it, itself among them, if it takes at most 1, 2 … places. 0 of a cluster, and of nodes that are
+    /// made already: what they have is the same wherever they are put.
     surface: [f32; WIDTH],
     inside: Inside,
 }
@@ -35,20 +37,23 @@ struct Half {
 enum Inside {
     /// Of these items.
     Cluster(Range<u32>),
-    /// One at this place, and the one before.
+    /// Two others: the left one is at this place, the right one right before this half.
     Halves(u32),
-    /// Those that two threads have built.
+    /// Two that were built apart.
     Trees(Box<[Tree; 2]>),
     /// Nodes already.
     Nodes(Box<Nodes>),
 }
 
-/// Nodes, the root first, and the items of each cluster in the order of their numbers.
+/// Nodes, the root first, and the runs of items that are clusters, in the order of their numbers.
 #[derive(Default)]
 pub(super) struct Nodes {
     pub nodes: Vec<Node>,
-    pub clusters: Vec<Range<u32>>,
+    pub runs: Vec<Range<u32>>,
 }
+
+/// Trees of fewer halves are left as they are until all nodes are made: a node of their own would have few children.
+const WORTH_NODES: usize = 256;
 
 impl Tree {
     /// With room for as many halves as there are, mostly, of so many items.
@@ -82,16 +87,22 @@ impl Tree {
 
     /// With nodes in place of its halves, while these are in a near cache: it will have a node of its own, wherever it is put.
     pub fn collapsed(self) -> Self {
-        let nodes = Box::new(self.nodes());
-        let bounds = self.finished().half().bounds;
+        if self.halves.len() < WORTH_NODES {
+            return self;
+        }
+        let bounds = self.whole().half().bounds;
+        let nodes = Box::new(self.into_nodes());
         Self { halves: vec![Half { bounds, surface: [0.0; WIDTH], inside: Inside::Nodes(nodes) }] }
     }
 
     /// Its nodes.
-    pub fn nodes(&self) -> Nodes {
+    pub fn into_nodes(mut self) -> Nodes {
+        if let [Half { inside: Inside::Nodes(nodes), .. }] = &mut self.halves[..] {
+            return std::mem::take(nodes);
+        }
         let (nodes, clusters) = self.room();
-        let mut all = Nodes { nodes: vec_with_room(nodes), clusters: Vec::with_capacity(clusters) };
-        all.add(self.finished());
+        let mut all = Nodes { nodes: vec_with_room(nodes), runs: Vec::with_capacity(clusters) };
+        all.add(self.whole());
         all
     }
 
@@ -102,7 +113,7 @@ impl Tree {
                 let [left, right] = trees.each_ref().map(Self::room);
                 (left.0 + right.0 + 1, left.1 + right.1)
             }
-            [Half { inside: Inside::Nodes(all), .. }] => (all.nodes.len(), all.clusters.len()),
+            [Half { inside: Inside::Nodes(all), .. }] => (all.nodes.len(), all.runs.len()),
             halves => {
                 let clusters = halves.len().div_ceil(2);
                 // A node has five children and more, mostly.
@@ -111,8 +122,8 @@ impl Tree {
         }
     }
 
-    fn finished(&self) -> Finished<'_> {
-        Finished(&self.halves)
+    fn whole(&self) -> Subtree<'_> {
+        Subtree(&self.halves)
     }
 }
 
@@ -140,11 +151,11 @@ fn least_sums(left: &[f32; WIDTH], right: &[f32; WIDTH]) -> [f32; WIDTH] {
     least
 }
 
-/// A half of a finished tree: the last one of these.
+/// The last of these halves, and all that is in it, which is before it.
 #[derive(Clone, Copy)]
-struct Finished<'a>(&'a [Half]);
+struct Subtree<'a>(&'a [Half]);
 
-impl<'a> Finished<'a> {
+impl<'a> Subtree<'a> {
     fn half(self) -> &'a Half {
         &self.0[self.0.len() - 1]
     }
@@ -156,7 +167,7 @@ impl<'a> Finished<'a> {
             Inside::Halves(left) => {
                 Some([Self(&self.0[..=*left as usize]), Self(&self.0[..self.0.len() - 1])])
             }
-            Inside::Trees(trees) => Some([trees[0].finished(), trees[1].finished()]),
+            Inside::Trees(trees) => Some([trees[0].whole(), trees[1].whole()]),
         }
     }
 
@@ -177,11 +188,11 @@ impl<'a> Finished<'a> {
 
 /// Of a node.
 struct Children<'a> {
-    some: [Finished<'a>; WIDTH],
+    some: [Subtree<'a>; WIDTH],
     count: usize,
 }
 
-fn fill_shared<'a>(halves: [Finished<'a>; 2], places: usize, children: &mut Children<'a>) {
+fn fill_shared<'a>(halves: [Subtree<'a>; 2], places: usize, children: &mut Children<'a>) {
     let first = share(halves.map(|half| &half.half().surface), places);
     halves[0].fill(first, children);
     halves[1].fill(places - first, children);
@@ -201,7 +212,7 @@ fn share([left, right]: [&[f32; WIDTH]; 2], places: usize) -> usize {
 
 impl Nodes {
     /// Adds a half; the number of its node.
-    fn add(&mut self, half: Finished) -> u32 {
+    fn add(&mut self, half: Subtree) -> u32 {
         if let Inside::Nodes(nodes) = &half.half().inside {
             return self.add_nodes(nodes);
         }
@@ -216,8 +227,8 @@ impl Nodes {
             let child = children.some[slot];
             let held = match &child.half().inside {
                 Inside::Cluster(items) => {
-                    self.clusters.push(items.clone());
-                    Child::Cluster(self.clusters.len() as u32 - 1)
+                    self.runs.push(items.clone());
+                    Child::Cluster(self.runs.len() as u32 - 1)
                 }
                 _ => Child::Node(self.add(child)),
             };
@@ -229,10 +240,10 @@ impl Nodes {
     /// Adds others; the number of their root.
     fn add_nodes(&mut self, others: &Self) -> u32 {
         let [first_node, first_cluster] =
-            [self.nodes.len(), self.clusters.len()].map(|count| count as u32);
+            [self.nodes.len(), self.runs.len()].map(|count| count as u32);
         let moved = others.nodes.iter().map(|node| node.moved(first_node, first_cluster));
         self.nodes.extend(moved);
-        self.clusters.extend_from_slice(&others.clusters);
+        self.runs.extend_from_slice(&others.runs);
         first_node
     }
 }
@@ -274,20 +285,27 @@ mod tests {
         tree
     }
 
-    /// The same, of halves that are built apart as long as there are more than ten clusters, and finished by `finish`.
-    fn apart(
-        places: &[[u8; 3]],
-        first: u32,
-        cuts: &mut impl Iterator<Item = usize>,
-        finish: fn(Tree) -> Tree,
-    ) -> Tree {
+    /// The same, of halves that are built apart as long as there are more than ten clusters.
+    fn apart(places: &[[u8; 3]], first: u32, cuts: &mut impl Iterator<Item = usize>) -> Tree {
         if places.len() <= 10 {
-            return finish(tree(places, first, cuts));
+            return tree(places, first, cuts);
         }
         let at = 1 + cuts.next().unwrap() % (places.len() - 1);
         let (left, right) = places.split_at(at);
-        let left = apart(left, first, cuts, finish);
-        Tree::of([left, apart(right, first + at as u32, cuts, finish)])
+        Tree::of([apart(left, first, cuts), apart(right, first + at as u32, cuts)])
+    }
+
+    /// Looks whether nodes hold so many clusters once; the surfaces of all nodes, of which the root has this one.
+    fn assert_holds(count: usize, area: f32, Nodes { nodes, runs }: &Nodes) -> f32 {
+        let all: Vec<u32> = (0..count as u32).collect();
+        let mut found = (0.0, Vec::new());
+        reached(0, area, nodes, &mut found);
+        found.1.sort_unstable();
+        assert_eq!(found.1, all);
+        let mut items: Vec<u32> = runs.iter().cloned().flatten().collect();
+        items.sort_unstable();
+        assert_eq!(items, all);
+        found.0
     }
 
     /// The surfaces of all nodes that are reached, and the items of clusters.
@@ -313,21 +331,44 @@ mod tests {
             cuts in prop::collection::vec(0usize..1000, 120),
         ) {
             let one = tree(&places, 0, &mut cuts.iter().copied());
-            let several = apart(&places, 0, &mut cuts.iter().copied(), |tree| tree);
-            let collapsed = apart(&places, 0, &mut cuts.into_iter(), Tree::collapsed);
-            for (tree, promises) in [(one, true), (several, true), (collapsed, false)] {
-                let root = tree.finished().half();
-                let Nodes { nodes, clusters } = tree.nodes();
-                let mut found = (0.0, Vec::new());
-                let area = if places.len() > 1 { half_area(root.bounds) } else { 0.0 };
-                reached(0, area, &nodes, &mut found);
-                found.1.sort_unstable();
-                prop_assert_eq!(found.1, (0..places.len() as u32).collect::<Vec<_>>());
-                let mut items: Vec<u32> = clusters.into_iter().flatten().collect();
-                items.sort_unstable();
-                prop_assert_eq!(items, (0..places.len() as u32).collect::<Vec<_>>());
-                prop_assert!(!promises || (found.0 - root.surface[0]).abs() <= 1e-4 * found.0);
+            let several = apart(&places, 0, &mut cuts.into_iter());
+            for tree in [one, several] {
+                let Half { bounds, surface, .. } = *tree.whole().half();
+                let area = if places.len() > 1 { half_area(bounds) } else { 0.0 };
+                let found = assert_holds(places.len(), area, &tree.into_nodes());
+                prop_assert!((found - surface[0]).abs() <= 1e-4 * found);
             }
+        }
+    }
+
+    #[test]
+    fn pieces_that_become_nodes_beforehand_lose_nothing_and_have_their_surface() {
+        let places = |count: usize| -> Vec<[u8; 3]> {
+            (0..count).map(|n| [n % 7, n % 11, n % 249].map(|place| place as u8)).collect()
+        };
+        // A large piece, one that is too small for a node of its own, and a single cluster.
+        for counts in [[400, 300], [400, 3], [1, 400], [300, 1]] {
+            let count = counts.iter().sum();
+            let (places, cuts) = (places(count), [3, 100, 8, 1, 20, 41]);
+            let (left, right) = places.split_at(counts[0]);
+            let mut cuts = cuts.into_iter().cycle();
+            let trees = [tree(left, 0, &mut cuts), tree(right, counts[0] as u32, &mut cuts)];
+            // Without those of nodes made beforehand, which are 0 above.
+            let mut made = 0.0;
+            for tree in &trees {
+                if tree.halves.len() >= WORTH_NODES {
+                    made += tree.whole().half().surface[0];
+                }
+            }
+            let all = Tree::of(trees.map(Tree::collapsed));
+            let Half { bounds, surface, .. } = *all.whole().half();
+            let nodes = all.into_nodes();
+            let found = assert_holds(count, half_area(bounds), &nodes);
+            assert!((found - surface[0] - made).abs() <= 1e-4 * found);
+            let children = |node: &Node| {
+                (0..WIDTH).filter(|&slot| node.low[0][slot] <= node.high[0][slot]).count()
+            };
+            assert!(nodes.nodes.iter().all(|node| children(node) > 1));
         }
     }
 
@@ -335,7 +376,7 @@ mod tests {
     fn eight_clusters_are_one_node_however_the_tree_leans() {
         for cuts in [vec![0; 8], vec![6, 5, 4, 3, 2, 1, 0, 0], vec![3, 1, 0, 0, 1, 0, 0, 0]] {
             let places: Vec<[u8; 3]> = (0..8).map(|n| [n * 3, n * n, 1]).collect();
-            let nodes = tree(&places, 0, &mut cuts.into_iter()).nodes().nodes;
+            let nodes = tree(&places, 0, &mut cuts.into_iter()).into_nodes().nodes;
             assert_eq!(nodes.len(), 1);
         }
     }
@@ -349,8 +390,8 @@ mod tests {
         let right = tree(&places[7..], 7, &mut std::iter::repeat(0));
         let tree = Tree::of([left, right]);
         let small = half_area(Bounds { min: Vec3::ZERO, max: Vec3::new(3.0, 1.0, 1.0) });
-        let root = tree.finished().half();
+        let root = tree.whole().half();
         assert_eq!(root.surface[0], half_area(root.bounds) + small);
-        assert_eq!(tree.nodes().nodes.len(), 2);
+        assert_eq!(tree.into_nodes().nodes.len(), 2);
     }
 }

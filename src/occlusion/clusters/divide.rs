@@ -12,6 +12,9 @@ const BINS: usize = 16;
 /// A number from 0 up to this, added to it, stands in the last bits, rounded.
 pub(super) const INTEGERS: f32 = (1 << (f32::MANTISSA_DIGITS - 1)) as f32;
 
+/// What is subtracted before that, so that it is rounded down: a little less than a half, lest whole numbers go both ways.
+pub(super) const TO_FLOOR: f32 = 0.4999;
+
 /// A box in two vectors of four; the fourth coordinates mean nothing.
 #[derive(Clone, Copy)]
 pub(super) struct Around {
@@ -110,7 +113,7 @@ pub(super) struct Divided {
     pub sides: [Around; 2],
 }
 
-/// Moves one side's items to the front. There are more than [`WIDTH`].
+/// Moves the left side's items to the front. There are two or more.
 pub(super) fn divide(items: &mut [Item], places: &Around, arithmetic: Available) -> Divided {
     arithmetic.run(Divide { items, places })
 }
@@ -167,7 +170,7 @@ impl Slots {
     #[inline(always)]
     fn of(&self, item: &Item) -> usize {
         const LAST: f32 = (BINS - 1) as f32;
-        let slot = (item.place_along(self.axis) - self.low) * self.scale - 0.5;
+        let slot = (item.place_along(self.axis) - self.low) * self.scale - TO_FLOOR;
         let slot = if slot > 0.0 { slot } else { 0.0 };
         let slot = if slot < LAST { slot } else { LAST };
         (slot + INTEGERS).to_bits() as usize % BINS
@@ -284,19 +287,24 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nothing_is_lost_and_both_sides_have_some(
+        fn nothing_is_lost_both_sides_have_some_and_every_arithmetic_does_the_same(
             places in prop::collection::vec((0u8..200, 0u8..20, 0u8..3), WIDTH + 1..1500),
         ) {
-            let mut items = items_at(&places);
-            let around = places_of(&items);
-            let Divided { at, sides } = divide(&mut items, &around, Available::newest());
-            prop_assert!(at > 0 && at < items.len());
-            for (index, item) in items.iter().enumerate() {
-                prop_assert!(holds(&sides[usize::from(index >= at)], item.place()));
+            let mut before = None;
+            for arithmetic in Available::all() {
+                let mut items = items_at(&places);
+                let around = places_of(&items);
+                let Divided { at, sides } = divide(&mut items, &around, arithmetic);
+                prop_assert!(at > 0 && at < items.len());
+                for (index, item) in items.iter().enumerate() {
+                    prop_assert!(holds(&sides[usize::from(index >= at)], item.place()));
+                }
+                let mut ids: Vec<TriangleId> = items.iter().map(Item::id).collect();
+                let same = (at, ids.clone());
+                prop_assert_eq!(before.get_or_insert(same.clone()), &same);
+                ids.sort_unstable();
+                prop_assert_eq!(ids, (0..places.len() as TriangleId).collect::<Vec<_>>());
             }
-            let mut ids: Vec<TriangleId> = items.iter().map(Item::id).collect();
-            ids.sort_unstable();
-            prop_assert_eq!(ids, (0..places.len() as TriangleId).collect::<Vec<_>>());
         }
     }
 
@@ -304,16 +312,32 @@ mod tests {
     fn two_heaps_are_taken_apart() {
         let places: Vec<(u8, u8, u8)> =
             (0..603).map(|number| (if number % 3 == 0 { 200 } else { 0 }, 0, 0)).collect();
-        let mut items = items_at(&places);
+        for arithmetic in Available::all() {
+            let mut items = items_at(&places);
+            let around = places_of(&items);
+            assert_eq!(divide(&mut items, &around, arithmetic).at, 402);
+            assert!(items[..402].iter().all(|item| item.0.low.x == 0.0));
+        }
+    }
+
+    #[test]
+    fn what_is_at_the_boundary_of_a_bin_comes_after_it() {
+        // As many places as there are boundaries, and the last one.
+        let places: Vec<(u8, u8, u8)> = (0..=BINS as u8).map(|x| (2 * x, 0, 0)).collect();
+        let items = items_at(&places);
         let around = places_of(&items);
-        assert_eq!(divide(&mut items, &around, Available::newest()).at, 402);
-        assert!(items[..402].iter().all(|item| item.0.low.x == 0.0));
+        let (axis, extent) = around.longest();
+        let slots = Slots { axis, low: around.low(axis), scale: BINS as f32 / extent };
+        let found = items.iter().map(|item| slots.of(item));
+        assert!(found.eq((0..BINS).chain([BINS - 1])));
     }
 
     #[test]
     fn items_in_one_place_are_halved() {
-        let mut items = items_at(&[(7, 7, 7); 320]);
-        let around = places_of(&items);
-        assert_eq!(divide(&mut items, &around, Available::newest()).at, 160);
+        for arithmetic in Available::all() {
+            let mut items = items_at(&[(7, 7, 7); 320]);
+            let around = places_of(&items);
+            assert_eq!(divide(&mut items, &around, arithmetic).at, 160);
+        }
     }
 }

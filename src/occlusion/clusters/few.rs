@@ -3,7 +3,8 @@
 //! Anywhere, not only between full clusters: two that are not full but apart are often cheaper than one and a rest.
 //!
 //! A quarter of the time of building is spent here. So items stay where they are, in the nearest cache, and bytes are sorted that say which; to
-//! sort is to count, for each, how many come before it, which vectors do without a branch; and all of it is one job in those vectors.
+//! sort is to count, for each, how many come before it, which vectors do without a branch; and all of it is one job in those vectors. *A part*
+//! is here a row of such bytes.
 
 use glam::{Vec4, Vec4Swizzles};
 
@@ -16,12 +17,15 @@ use crate::geometry::lanes::{Available, Lanes, LanesJob};
 /// So many at most.
 pub(super) const FEW: usize = 128;
 
+// Numbers of items, and how many there are, are bytes; a key has room for a number of seven bits and a place of eight.
+const _: () = assert!(FEW <= 128);
+
 /// Bits of a key: the place along the axis, and below it the number of the item, so that no two are alike. With a sign, sixteen
 /// of them are one vector of AVX2; that leaves the place a 256th of the extent, or better.
 const KEY_BITS: u32 = 15;
 
-/// Sorts the triangles of [`FEW`] items or less so that those of a cluster are in a row, and adds the tree over them. `first` is the place
-/// of the first one among all.
+/// Adds the tree over [`FEW`] items or less, which stay where they are; their triangles are put into `sorted` so that those of a cluster are
+/// in a row. `first` is the place of the first one among all.
 pub(super) fn add(
     tree: &mut Tree,
     items: &[Item],
@@ -29,17 +33,17 @@ pub(super) fn add(
     first: u32,
     arithmetic: Available,
 ) {
-    let mut arranged = Arranged::new(items.len());
+    let mut arranged = Arranged::new();
     arithmetic.run(Arrange { items, arranged: &mut arranged });
     let order = &arranged.order[..items.len()];
     for (id, &number) in sorted.iter_mut().zip(order) {
         *id = items[usize::from(number)].id();
     }
-    add_cut(tree, &mut arranged.cuts.into_iter(), items, order, first);
+    add_part(tree, &mut arranged.cuts.into_iter(), items, order, first);
 }
 
-/// Adds the tree that cuts make, in their order.
-fn add_cut(
+/// Adds the tree over a part, as the next cuts have it.
+fn add_part(
     tree: &mut Tree,
     cuts: &mut impl Iterator<Item = u8>,
     items: &[Item],
@@ -49,9 +53,9 @@ fn add_cut(
     match cuts.next() {
         Some(at @ 1..) => {
             let (left, right) = order.split_at(at.into());
-            add_cut(tree, cuts, items, left, first);
+            add_part(tree, cuts, items, left, first);
             let left = tree.last();
-            add_cut(tree, cuts, items, right, first + u32::from(at));
+            add_part(tree, cuts, items, right, first + u32::from(at));
             tree.join(left);
         }
         _ => {
@@ -67,16 +71,14 @@ fn add_cut(
 /// In which order items are, and where they are cut.
 struct Arranged {
     order: [u8; FEW],
-    /// Of each part after how many of its items, before that of its own two; 0 where it is a cluster.
-    cuts: Vec<u8>,
+    /// Of each part, how many of its items are to the left; 0 where it is a cluster. A part comes before all that is to its left, and that before
+    /// all that is to its right.
+    cuts: [u8; 2 * FEW],
 }
 
 impl Arranged {
-    fn new(count: usize) -> Self {
-        Self {
-            order: std::array::from_fn(|number| number as u8),
-            cuts: Vec::with_capacity(2 * count),
-        }
+    fn new() -> Self {
+        Self { order: std::array::from_fn(|number| number as u8), cuts: [0; 2 * FEW] }
     }
 }
 
@@ -94,19 +96,20 @@ impl LanesJob for Arrange<'_> {
         // Where the parts end that are still to be cut, the next one last.
         let mut ends = [0; FEW];
         ends[0] = items.len() as u8;
-        let (mut open, mut start) = (1, 0);
+        let (mut open, mut start, mut number) = (1, 0, 0);
         while open > 0 {
             let part = &mut order[start..usize::from(ends[open - 1])];
             if part.len() <= WIDTH {
-                cuts.push(0);
+                cuts[number] = 0;
                 open -= 1;
                 start += part.len();
             } else {
                 let at = divide(items, part);
-                cuts.push(at as u8);
+                cuts[number] = at as u8;
                 ends[open] = (start + at) as u8;
                 open += 1;
             }
+            number += 1;
         }
     }
 }
@@ -117,7 +120,8 @@ fn divide(items: &[Item], order: &mut [u8]) -> usize {
     if sort(items, order) { cheapest_cut(items, order) } else { order.len() / 2 }
 }
 
-/// Sorts them along the longest axis of the box around their places, but for those that are very close; whether there is one.
+/// Sorts them along the longest axis of the box around their places; what is closer than a 255th of it stays in its order. `false`, with all as it
+/// was, if that axis has no length, or one that is no number.
 #[inline(always)]
 fn sort(items: &[Item], order: &mut [u8]) -> bool {
     let (mut low, mut high) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
@@ -197,7 +201,8 @@ fn count_before<const BLOCKS: usize>(keys: &[i16; FEW], count: usize, all_before
     let (blocks, _) = keys.as_chunks::<TOGETHER>();
     let mut before = [[0; TOGETHER]; BLOCKS];
     for other in &keys[..count] {
-        // No key is less than the greatest that there is. With a way out of the loop, it is not taken for one to be turned inside out.
+        // Only the last one can be the greatest, as its number has all bits set, and no key is less: nothing is left out. But without
+        // a way out the compiler turns these loops inside out, which takes twice the time.
         if *other == i16::MAX {
             break;
         }
@@ -258,7 +263,7 @@ mod tests {
         ) {
             let items = items(&places);
             let arranged = |arithmetic: Available| {
-                let mut arranged = Arranged::new(items.len());
+                let mut arranged = Arranged::new();
                 arithmetic.run(Arrange { items: &items, arranged: &mut arranged });
                 (arranged.order[..items.len()].to_vec(), arranged.cuts)
             };
@@ -271,23 +276,25 @@ mod tests {
             let mut sorted = vec![TriangleId::MAX; items.len()];
             let mut tree = Tree::default();
             add(&mut tree, &items, &mut sorted, 0, Available::newest());
-            let clusters = tree.nodes().clusters;
-            prop_assert!(clusters.iter().all(|cluster| (1..=WIDTH).contains(&cluster.len())));
-            prop_assert_eq!(clusters.iter().map(ExactSizeIterator::len).sum::<usize>(), items.len());
+            let runs = tree.into_nodes().runs;
+            prop_assert!(runs.iter().all(|run| (1..=WIDTH).contains(&run.len())));
+            prop_assert_eq!(runs.iter().map(ExactSizeIterator::len).sum::<usize>(), items.len());
             sorted.sort_unstable();
             prop_assert!(sorted.into_iter().eq(0..items.len() as TriangleId));
         }
     }
 
     #[test]
-    fn as_many_as_there_may_be_are_sorted_from_either_end() {
-        // The last one has the greatest key that there is, or the least.
-        let rising: Vec<f32> = (0..FEW as u8).map(f32::from).collect();
-        let falling: Vec<f32> = rising.iter().rev().copied().collect();
-        for places in [rising, falling] {
-            let items = items(&places);
-            let mut order = in_order(&items);
-            assert!(sort(&items, &mut order) && is_sorted(&items, &order));
+    fn the_greatest_key_that_there_is_is_a_key_like_others() {
+        // The last of as many as numbers have bits for, and also of one less.
+        for count in [15u8, 16, 31, 32, 63, 64, 127, 128] {
+            let rising: Vec<f32> = (0..count).map(f32::from).collect();
+            let falling: Vec<f32> = rising.iter().rev().copied().collect();
+            for places in [rising, falling] {
+                let items = items(&places);
+                let mut order = in_order(&items);
+                assert!(sort(&items, &mut order) && is_sorted(&items, &order));
+            }
         }
     }
 

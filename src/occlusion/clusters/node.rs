@@ -70,6 +70,8 @@ impl Node {
     }
 
     /// The same among others: so many nodes come before those that it is with, and so many clusters.
+    ///
+    /// Boxes that are not used get numbers, too, which nobody reads.
     #[must_use]
     pub fn moved(&self, nodes: u32, clusters: u32) -> Self {
         let mut moved = self.clone();

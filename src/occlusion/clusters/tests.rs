@@ -62,8 +62,8 @@ fn assert_holds_finite_ones(triangles: &[Triangle]) {
     }
 }
 
-/// As many as one cluster, few, more, and many have.
-const COUNTS: [usize; 6] = [7, 9, 100, 1000, 4096, 20_000];
+/// As many as one cluster, few, some that bins divide, those that cells do, and what one thread and several build.
+const COUNTS: [usize; 10] = [7, 8, 9, 128, 129, 400, 512, 8191, 8192, 20_000];
 
 #[test]
 fn scenes_as_wide_as_numbers_go_are_built_and_nothing_is_lost() {
@@ -97,6 +97,19 @@ fn scenes_whose_sums_are_infinite_are_built_and_nothing_is_lost() {
             assert_holds_finite_ones(&triangles);
         }
     }
+}
+
+#[test]
+fn the_tree_does_not_depend_on_how_many_threads_build_it() {
+    let triangles = Triangles::new(spread(50_000), []);
+    let built = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let clusters = pool.install(|| Clusters::new(&triangles));
+        let ids: Vec<_> = clusters.all().iter().map(Cluster::ids).copied().collect();
+        let boxes: Vec<_> = clusters.nodes().iter().map(|node| (node.low, node.high)).collect();
+        (ids, boxes)
+    };
+    assert_eq!(built(1), built(4));
 }
 
 #[test]
