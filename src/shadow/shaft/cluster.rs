@@ -1,5 +1,7 @@
 //! What a bundle comes to: the triangles of a cluster, tested for a part of the bundle, for a packet, or for few of its rays.
 
+use std::ops::ControlFlow::{Break, Continue};
+
 use glam::Vec3;
 
 use super::bundle::{Bundle, PACKET, PACKETS, PACKETS_OF, packets_of};
@@ -7,8 +9,9 @@ use super::cast::{Cast, Judged, Shadow};
 use super::kept::Kept;
 use super::planes::{Ground, Planes};
 use super::walk::Around;
-use crate::exact::certified;
+use crate::exact::{Exact, certified};
 use crate::geometry::TriangleId;
+use crate::geometry::intersect::RayLanes;
 use crate::geometry::lanes::{Lanes, Sixteen};
 use crate::occlusion::{Cluster, Tally, WIDTH};
 
@@ -46,13 +49,26 @@ impl Tests<'_, '_> {
         }
     }
 
-    /// Tests them for few rays of a packet, one by one.
+    /// Tests them for few rays of a packet, one by one: by their planes if these are there; to make them for so few takes longer than a test.
     #[inline(always)]
     pub fn few<L: Lanes, const ALL: bool>(self, packet: usize, mut rays: u16, number: u32) {
-        let Self { bundle, kept, ground, around, tally } = self;
+        let Self { bundle, kept, around, tally, .. } = self;
         tally.triangle_tests += WIDTH as u64 * u64::from(rays.count_ones());
         let cluster = &around.clusters.all()[number as usize];
-        let planes = kept.of::<L>(ground, number, cluster);
+        let Some(planes) = kept.known(number) else {
+            while rays != 0 {
+                let lane = rays.trailing_zeros() as usize;
+                rays &= rays - 1;
+                let ray = around.queries.ray(packet * PACKET + lane);
+                let lanes = RayLanes::<L>::of::<Exact>(ray);
+                let hit = |triangle| {
+                    bundle.meet::<ALL>(packet, 1 << lane, triangle);
+                    if ALL { Continue(()) } else { Break(()) }
+                };
+                let _ = cluster.test_each::<Exact, L>(ray, &lanes, around.triangles, hit);
+            }
+            return;
+        };
         let mut blocked = 0;
         while rays != 0 {
             let lane = rays.trailing_zeros() as usize;

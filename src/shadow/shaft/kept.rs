@@ -32,7 +32,14 @@ impl Kept {
         }
     }
 
-    /// The planes of a cluster, which has this number.
+    /// The planes of the cluster with this number, if they are there.
+    #[inline(always)]
+    pub fn known(&self, number: u32) -> Option<&Planes> {
+        let place = number as usize % KEPT;
+        (self.clusters[place] == number).then(|| &self.planes[place])
+    }
+
+    /// The planes of a cluster, which has this number; they are made if they are not there.
     #[inline(always)]
     pub fn of<L: Lanes>(&mut self, ground: &Ground, number: u32, cluster: &Cluster) -> &Planes {
         let place = number as usize % KEPT;
