@@ -28,8 +28,8 @@ impl Available {
         Self::all().last().expect("SSE arithmetic is everywhere")
     }
 
-    /// The newest for vectors of short integers: AVX2, if there is one. AVX-512 is compiled for here without BW, so such vectors have 256 bits there, and
-    /// code that also may use 512 moves halves to and fro.
+    /// The newest for vectors of short integers: AVX2, if there is one. AVX-512 is compiled for here without BW, so such vectors have 256
+    /// bits there, and code that also may use 512 moves halves to and fro.
     pub fn newest_for_short_integers() -> Self {
         Self::find(Arithmetic::Avx2).unwrap_or_else(Self::newest)
     }

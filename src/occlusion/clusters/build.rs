@@ -2,9 +2,9 @@
 //!
 //! Top down by the surface area heuristic (MacDonald & Booth 1990; Wald 2007): many triangles by the cells of a grid, several levels of the
 //! tree at once (`cells`), then in bins along the longest axis (`divide`); few of them are sorted along it, and every cut is weighed (`few`).
-//! Then halves are put into nodes of eight (`collapse`). The counts that the heuristic weighs are clusters: a cluster costs the same however full it is. So most come out
-//! full, but not where a few triangles are apart from the rest: cuts at multiples of eight took 4 bytes a triangle less, and 1.6 times
-//! the tests where things are small and apart.
+//! Then halves are put into nodes of eight (`collapse`). The counts that the heuristic weighs are clusters: a cluster costs the same
+//! however full it is. So most come out full, but not where a few triangles are apart from the rest: cuts at multiples of eight took 4
+//! bytes a triangle less, and 1.6 times the tests where things are small and apart.
 //!
 //! MacDonald, Booth: Heuristics for Ray Tracing Using Space Subdivision. The Visual Computer 6(3), 1990.
 //! Wald: On Fast Construction of SAH-based Bounding Volume Hierarchies. Symposium on Interactive Ray Tracing 2007.
@@ -23,7 +23,8 @@ use crate::geometry::{TriangleId, Triangles, is_finite};
 use crate::large_pages::vec_with_room;
 use crate::occlusion::Eight;
 
-/// Portions with fewer triangles are divided, and put into nodes, by one thread: what comes out depends on this, not on how many threads there are.
+/// Portions with fewer triangles are divided, and put into nodes, by one thread: what comes out depends on this, not on how many
+/// threads there are.
 const WORTH_A_THREAD: usize = 8192;
 
 /// Of these triangles, without those that are not finite: they block nothing, and no box is around a NaN.

@@ -18,8 +18,8 @@ use super::{Child, Node, WIDTH};
 use crate::geometry::Bounds;
 use crate::large_pages::vec_with_room;
 
-/// A tree while it is built: halves in a row, each after what is in it, the whole one last. Or a single one that stands for trees that were
-/// built apart, or for nodes.
+/// A tree while it is built: halves in a row, each after what is in it, the whole one last. Or a single one that stands for trees
+/// that were built apart, or for nodes.
 #[derive(Default)]
 pub(super) struct Tree {
     halves: Vec<Half>,

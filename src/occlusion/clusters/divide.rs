@@ -34,11 +34,13 @@ impl Around {
     }
 
     /// Where it begins along an axis.
+    #[inline(always)]
     pub fn low(&self, axis: usize) -> f32 {
         self.low[axis]
     }
 
     /// Along which axis it is longest, and how long.
+    #[inline(always)]
     pub fn longest(&self) -> (usize, f32) {
         let extent = (self.high - self.low).xyz();
         let axis = extent.max_position();
@@ -200,6 +202,7 @@ impl Heap {
     }
 
     /// What it costs the rays that meet the box, by the clusters that it takes.
+    #[inline(always)]
     pub fn cost(&self) -> f32 {
         self.count.div_ceil(WIDTH) as f32 * self.around.half_area()
     }

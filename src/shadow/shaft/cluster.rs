@@ -1,6 +1,6 @@
 //! What a bundle comes to: the triangles of a cluster, tested for a part of the bundle, for a packet, or for few of its rays.
 
-use std::ops::ControlFlow::{Break, Continue};
+use std::ops::ControlFlow::{self, Break, Continue};
 
 use glam::Vec3;
 
@@ -10,9 +10,9 @@ use super::kept::Kept;
 use super::planes::{Ground, Planes};
 use super::walk::Around;
 use crate::exact::{Exact, certified};
-use crate::geometry::TriangleId;
 use crate::geometry::intersect::RayLanes;
 use crate::geometry::lanes::{Lanes, Sixteen};
+use crate::geometry::{Ray, TriangleId};
 use crate::occlusion::{Cluster, Tally, WIDTH};
 
 /// Of fewer packets, boxes are not looked at before a triangle is cast.
@@ -49,7 +49,8 @@ impl Tests<'_, '_> {
         }
     }
 
-    /// Tests them for few rays of a packet, one by one: by their planes if these are there; to make them for so few takes longer than a test.
+    /// Tests them for few rays of a packet, one by one: by their planes if these are there; to make them for so few takes longer
+    /// than a test.
     #[inline(always)]
     pub fn few<L: Lanes, const ALL: bool>(self, packet: usize, mut rays: u16, number: u32) {
         let Self { bundle, kept, around, tally, .. } = self;
@@ -61,11 +62,8 @@ impl Tests<'_, '_> {
                 rays &= rays - 1;
                 let ray = around.queries.ray(packet * PACKET + lane);
                 let lanes = RayLanes::<L>::of::<Exact>(ray);
-                let hit = |triangle| {
-                    bundle.meet::<ALL>(packet, 1 << lane, triangle);
-                    if ALL { Continue(()) } else { Break(()) }
-                };
-                let _ = cluster.test_each::<Exact, L>(ray, &lanes, around.triangles, hit);
+                let alone = Alone { packet, lane, ray, lanes: &lanes };
+                let _ = alone.test::<ALL>(bundle, cluster, around);
             }
             return;
         };
@@ -93,6 +91,31 @@ impl Tests<'_, '_> {
         if !ALL {
             bundle.block(packet, blocked);
         }
+    }
+}
+
+/// A ray of a packet that is tested by itself.
+pub(super) struct Alone<'a, L: Lanes> {
+    pub packet: usize,
+    pub lane: usize,
+    pub ray: &'a Ray,
+    pub lanes: &'a RayLanes<L>,
+}
+
+impl<L: Lanes> Alone<'_, L> {
+    /// Tests the triangles of a cluster by the exact test. Breaks at the first that blocks, unless `ALL` are wanted.
+    #[inline(always)]
+    pub fn test<const ALL: bool>(
+        &self,
+        bundle: &mut Bundle,
+        cluster: &Cluster,
+        around: &Around,
+    ) -> ControlFlow<()> {
+        let hit = |triangle| {
+            bundle.meet::<ALL>(self.packet, 1 << self.lane, triangle);
+            if ALL { Continue(()) } else { Break(()) }
+        };
+        cluster.test_each::<Exact, L>(self.ray, self.lanes, around.triangles, hit)
     }
 }
 

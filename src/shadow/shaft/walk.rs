@@ -5,10 +5,8 @@
 //! apart, and its rays go on one by one. So rays that stay together share every step, and those that do not cost
 //! what they cost alone.
 
-use std::ops::ControlFlow::{Break, Continue};
-
 use super::bundle::{Bundle, Chosen, PACKET, PACKETS};
-use super::cluster::Tests;
+use super::cluster::{Alone, Tests};
 use super::columns::Columns;
 use super::frustum::{Met, Shaft};
 use super::kept::Kept;
@@ -249,6 +247,7 @@ impl Walker {
             rays &= rays - 1;
             let ray = around.queries.ray(packet * PACKET + lane);
             let lanes = RayLanes::<L>::of::<Exact>(ray);
+            let alone = Alone { packet, lane, ray, lanes: &lanes };
             let shaft = Shaft::of_ray(ray, self.bundle.largest);
             self.rest.clear();
             self.rest.push(node);
@@ -263,12 +262,7 @@ impl Walker {
                     clusters &= clusters - 1;
                     tally.triangle_tests += WIDTH as u64;
                     let cluster = &around.clusters.all()[node.number(slot) as usize];
-                    let hit = |triangle| {
-                        self.bundle.meet::<ALL>(packet, 1 << lane, triangle);
-                        if ALL { Continue(()) } else { Break(()) }
-                    };
-                    let tests = cluster.test_each::<Exact, L>(ray, &lanes, around.triangles, hit);
-                    if tests.is_break() {
+                    if alone.test::<ALL>(&mut self.bundle, cluster, around).is_break() {
                         break 'ray;
                     }
                 }
