@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use super::avx::Avx;
 #[cfg(target_arch = "x86_64")]
 use super::sse::Sse;
-use super::{Arithmetic, Kernel, Lanes, LanesJob};
+use super::{Arithmetic, InLanes, Lanes, LanesJob};
 
 /// An arithmetic that this CPU was found to have. There is no other way to one, so any job may run in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,17 +50,5 @@ impl Available {
         }
         #[cfg(not(target_arch = "x86_64"))]
         job.run::<super::Scalar<false, false>>()
-    }
-}
-
-/// A job in lanes of one kind.
-struct InLanes<J, L>(J, PhantomData<L>);
-
-impl<J: LanesJob, L: Lanes> Kernel for InLanes<J, L> {
-    type Answer = J::Answer;
-
-    #[inline(always)]
-    fn run(self) -> J::Answer {
-        self.0.run::<L>()
     }
 }

@@ -42,6 +42,11 @@ where
         unsafe { if RCP14 { run_avx512(kernel) } else { run_avx2(kernel) } }
     }
     #[inline(always)]
+    fn run_apart<K: Kernel>(kernel: K) -> K::Answer {
+        // SAFETY: see the head of this file.
+        unsafe { if RCP14 { apart_avx512(kernel) } else { apart_avx2(kernel) } }
+    }
+    #[inline(always)]
     fn splat(value: f32) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm256_set1_ps(value) })
@@ -258,11 +263,17 @@ impl Sixteen for Zmm {
     }
 }
 
-/// What runs a kernel with these features, and whether this CPU has them: of one list, so that what is compiled for is looked for.
+/// What runs a kernel with these features, merged with its caller or apart, and whether this CPU has them: of one list, so that what is compiled for is looked for.
 macro_rules! with_features {
-    ($run:ident, $is_available:ident: $($feature:tt),+) => {
+    ($run:ident, $apart:ident, $is_available:ident: $($feature:tt),+) => {
         $(#[target_feature(enable = $feature)])+
         fn $run<K: Kernel>(kernel: K) -> K::Answer {
+            kernel.run()
+        }
+
+        $(#[target_feature(enable = $feature)])+
+        #[inline(never)]
+        fn $apart<K: Kernel>(kernel: K) -> K::Answer {
             kernel.run()
         }
 
@@ -272,9 +283,9 @@ macro_rules! with_features {
     };
 }
 
-with_features!(run_avx2, has_avx2: "avx2", "fma", "bmi1", "bmi2", "lzcnt", "popcnt");
+with_features!(run_avx2, apart_avx2, has_avx2: "avx2", "fma", "bmi1", "bmi2", "lzcnt", "popcnt");
 with_features!(
-    run_avx512, has_avx512:
+    run_avx512, apart_avx512, has_avx512:
     "avx512f", "avx512vl", "avx2", "fma", "bmi1", "bmi2", "lzcnt", "popcnt"
 );
 

@@ -19,6 +19,10 @@ impl<const FUSED: bool, const RCP14: bool> Lanes for Scalar<FUSED, RCP14> {
     fn run<K: Kernel>(kernel: K) -> K::Answer {
         kernel.run()
     }
+    #[inline(never)]
+    fn run_apart<K: Kernel>(kernel: K) -> K::Answer {
+        kernel.run()
+    }
     #[inline(always)]
     fn splat(value: f32) -> Self {
         Self(value)

@@ -22,6 +22,10 @@ impl Lanes for Sse {
     fn run<K: Kernel>(kernel: K) -> K::Answer {
         kernel.run()
     }
+    #[inline(never)]
+    fn run_apart<K: Kernel>(kernel: K) -> K::Answer {
+        kernel.run()
+    }
     #[inline(always)]
     fn splat(value: f32) -> Self {
         // SAFETY: see the head of this file.

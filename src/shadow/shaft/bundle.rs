@@ -17,6 +17,9 @@ const SPREAD_WHOLE: f32 = 0.4;
 /// A bundle is spread too if its packets are this many times larger than a cluster: such shafts meet too many clusters.
 const SPREAD_CLUSTERS: f32 = 16.0;
 
+/// A bundle is dark if more than this part of its queries is blocked.
+const DARK: f32 = 0.25;
+
 /// Largest coordinates of bundles that are answered here: products of four of them stay within f32.
 const MAGNITUDES: std::ops::Range<f32> = 1e-6..1e9;
 
@@ -118,8 +121,8 @@ pub(super) struct Bundle {
     views: [View; 2 * PACKETS],
     /// The bases of the parts' rays: of queries that are sorted, as far as they are known; of others, the boxes.
     pub bases: [OriginBox; 2 * PACKETS],
-    /// Bases and boxes of the packets, side by side.
-    beside: [Boxes; 2],
+    /// Bases and boxes of the packets, side by side, if that is known.
+    pub beside: [Boxes; 2],
     is_beside_known: bool,
     /// A bit a query that is a ray to the light.
     pub asked: [u16; PACKETS],
@@ -150,6 +153,23 @@ impl Bundle {
             met: Vec::new(),
             largest: 0.0,
         }
+    }
+
+    /// Nothing is known of a bundle before the next one, which may be to another light.
+    pub fn forget(&mut self) {
+        self.ground = None;
+        self.asked = [0; PACKETS];
+    }
+
+    /// Whether what was asked last is dark.
+    #[inline(always)]
+    pub fn is_dark(&self) -> bool {
+        let (mut asked, mut open) = (0, 0);
+        for (packet, of_packet) in self.asked.iter().enumerate() {
+            asked += of_packet.count_ones();
+            open += (self.open[packet] & of_packet).count_ones();
+        }
+        (asked - open) as f32 > DARK * asked as f32
     }
 
     /// Takes over queries; those that are not rays to this light are not asked. Gives the ground that they are on; `None`
@@ -273,18 +293,17 @@ impl Bundle {
         }
     }
 
-    /// Bases and boxes of the packets, side by side.
+    /// Makes sure that bases and boxes of the packets are side by side.
     #[inline(always)]
-    pub fn beside(&mut self, centre: Vec3) -> &[Boxes; 2] {
+    pub fn know_beside(&mut self, centre: Vec3) {
         if !self.is_beside_known {
-            self.know_beside(centre);
+            self.put_beside(centre);
         }
-        &self.beside
     }
 
     // Not inline: what is once a bundle should not push what is once a triangle out of registers.
     #[inline(never)]
-    fn know_beside(&mut self, centre: Vec3) {
+    fn put_beside(&mut self, centre: Vec3) {
         for part in PACKETS..2 * PACKETS {
             self.know_base(part, centre);
         }

@@ -1,24 +1,22 @@
 //! What a bundle comes to: the triangles of a cluster, tested for a part of the bundle, for a packet, or for few of its rays.
 
-use std::ops::ControlFlow::{self, Break, Continue};
-
 use glam::Vec3;
 
+use super::alone::Alone;
 use super::bundle::{Bundle, PACKET, PACKETS, PACKETS_OF, packets_of};
-use super::cast::{Cast, Judged, Shadow};
+use super::cast::{Judged, Shadow};
 use super::kept::Kept;
 use super::planes::{Ground, Planes};
 use super::walk::Around;
-use crate::exact::{Exact, certified};
-use crate::geometry::intersect::RayLanes;
-use crate::geometry::lanes::{Lanes, Sixteen};
-use crate::geometry::{Ray, TriangleId};
+use crate::exact::certified;
+use crate::geometry::TriangleId;
+use crate::geometry::lanes::{Lanes, LanesJob, Sixteen};
 use crate::occlusion::{Cluster, Tally, WIDTH};
 
 /// Of fewer packets, boxes are not looked at before a triangle is cast.
 const WORTH_JUDGING: usize = 4;
 
-/// Tests for a bundle.
+/// What tests for a bundle need.
 pub(super) struct Tests<'a, 'b> {
     pub bundle: &'a mut Bundle,
     pub kept: &'a mut Kept,
@@ -27,42 +25,75 @@ pub(super) struct Tests<'a, 'b> {
     pub tally: &'a mut Tally,
 }
 
-impl Tests<'_, '_> {
-    /// Tests the triangles of a cluster for a part of the bundle that has several packets.
+/// Tests the triangles of a cluster for a part of the bundle that has several packets.
+pub(super) struct OfPart<'a, 'b, const ALL: bool> {
+    pub tests: Tests<'a, 'b>,
+    pub part: usize,
+    pub cluster: u32,
+}
+
+impl<const ALL: bool> LanesJob for OfPart<'_, '_, ALL> {
+    type Answer = ();
+
     #[inline(always)]
-    pub fn part<L: Lanes, const ALL: bool>(self, part: usize, number: u32) {
-        let Self { bundle, kept, ground, around, tally } = self;
-        let mut shadows = Shadows::on::<L>(bundle, part, kept, ground, around, number);
+    fn run<L: Lanes>(self) {
+        let Self { tests: Tests { bundle, kept, ground, around, tally }, part, cluster } = self;
+        bundle.know_beside(ground.centre);
+        let mut shadows = Shadows::on::<L>(bundle, part, kept, ground, around, cluster);
         while let Some(shadow) = shadows.next::<L::Sixteen>() {
-            cast::<_, ALL>(bundle, part, &shadow, ground, around, tally);
+            cast::<_, ALL>(bundle, part, &shadow, around, tally);
         }
     }
+}
 
-    /// Tests them for some rays of a packet.
+/// Tests them for some rays of a packet.
+pub(super) struct OfPacket<'a, 'b, const ALL: bool> {
+    pub tests: Tests<'a, 'b>,
+    pub packet: usize,
+    pub rays: u16,
+    pub cluster: u32,
+}
+
+impl<const ALL: bool> LanesJob for OfPacket<'_, '_, ALL> {
+    type Answer = ();
+
     #[inline(always)]
-    pub fn packet<L: Lanes, const ALL: bool>(self, packet: usize, rays: u16, number: u32) {
-        let Self { bundle, kept, ground, around, tally } = self;
+    fn run<L: Lanes>(self) {
+        let Self { tests, packet, rays, cluster } = self;
+        let Tests { bundle, kept, ground, around, tally } = tests;
         let part = PACKETS + packet;
-        let mut shadows = Shadows::on::<L>(bundle, part, kept, ground, around, number);
+        let mut shadows = Shadows::on::<L>(bundle, part, kept, ground, around, cluster);
         while let Some(shadow) = shadows.next::<L::Sixteen>() {
-            cast_on::<_, ALL>(bundle, packet, rays, &shadow, around, tally);
+            let mut doubtful = Doubtful::NONE;
+            cast_on::<_, ALL>(bundle, packet, rays, &shadow, &mut doubtful, tally);
+            doubtful.settle::<ALL>(bundle, shadow.triangle, around);
         }
     }
+}
 
-    /// Tests them for few rays of a packet, one by one: by their planes if these are there; to make them for so few takes longer
-    /// than a test.
+/// Tests them for few rays of a packet, one by one: by their planes if these are there; to make them for so few takes longer
+/// than a test.
+pub(super) struct OfFew<'a, 'b, const ALL: bool> {
+    pub tests: Tests<'a, 'b>,
+    pub packet: usize,
+    pub rays: u16,
+    pub cluster: u32,
+}
+
+impl<const ALL: bool> LanesJob for OfFew<'_, '_, ALL> {
+    type Answer = ();
+
     #[inline(always)]
-    pub fn few<L: Lanes, const ALL: bool>(self, packet: usize, mut rays: u16, number: u32) {
-        let Self { bundle, kept, around, tally, .. } = self;
+    fn run<L: Lanes>(self) {
+        let Self { tests: Tests { bundle, kept, around, tally, .. }, packet, mut rays, cluster } =
+            self;
         tally.triangle_tests += WIDTH as u64 * u64::from(rays.count_ones());
-        let cluster = &around.clusters.all()[number as usize];
-        let Some(planes) = kept.known(number) else {
+        let known = kept.known(cluster);
+        let cluster = &around.clusters.all()[cluster as usize];
+        let Some(planes) = known else {
             while rays != 0 {
-                let lane = rays.trailing_zeros() as usize;
+                let alone = Alone::<L>::new(around, packet, rays.trailing_zeros() as usize);
                 rays &= rays - 1;
-                let ray = around.queries.ray(packet * PACKET + lane);
-                let lanes = RayLanes::<L>::of::<Exact>(ray);
-                let alone = Alone { packet, lane, ray, lanes: &lanes };
                 let _ = alone.test::<ALL>(bundle, cluster, around);
             }
             return;
@@ -91,31 +122,6 @@ impl Tests<'_, '_> {
         if !ALL {
             bundle.block(packet, blocked);
         }
-    }
-}
-
-/// A ray of a packet that is tested by itself.
-pub(super) struct Alone<'a, L: Lanes> {
-    pub packet: usize,
-    pub lane: usize,
-    pub ray: &'a Ray,
-    pub lanes: &'a RayLanes<L>,
-}
-
-impl<L: Lanes> Alone<'_, L> {
-    /// Tests the triangles of a cluster by the exact test. Breaks at the first that blocks, unless `ALL` are wanted.
-    #[inline(always)]
-    pub fn test<const ALL: bool>(
-        &self,
-        bundle: &mut Bundle,
-        cluster: &Cluster,
-        around: &Around,
-    ) -> ControlFlow<()> {
-        let hit = |triangle| {
-            bundle.meet::<ALL>(self.packet, 1 << self.lane, triangle);
-            if ALL { Continue(()) } else { Break(()) }
-        };
-        cluster.test_each::<Exact, L>(self.ray, self.lanes, around.triangles, hit)
     }
 }
 
@@ -162,29 +168,30 @@ fn cast<S: Sixteen, const ALL: bool>(
     bundle: &mut Bundle,
     part: usize,
     shadow: &Shadow<S>,
-    ground: &Ground,
     around: &Around,
     tally: &mut Tally,
 ) {
+    let mut doubtful = Doubtful::NONE;
     let (first, last) = packets_of(part);
     // Without a side the signs of planes say nothing by themselves.
     if shadow.unsided || last - first < WORTH_JUDGING {
         for packet in first..last {
-            cast_on::<S, ALL>(bundle, packet, u16::MAX, shadow, around, tally);
+            cast_on::<S, ALL>(bundle, packet, u16::MAX, shadow, &mut doubtful, tally);
         }
-        return;
-    }
-    let Judged { touched, covered } = shadow.judge(bundle.beside(ground.centre));
-    let mut touched = touched & PACKETS_OF[part];
-    while touched != 0 {
-        let packet = touched.trailing_zeros() as usize;
-        touched &= touched - 1;
-        if covered & (1 << packet) != 0 {
-            bundle.meet::<ALL>(packet, u16::MAX, shadow.triangle);
-        } else {
-            cast_on::<S, ALL>(bundle, packet, u16::MAX, shadow, around, tally);
+    } else {
+        let Judged { touched, covered } = shadow.judge(&bundle.beside);
+        let mut touched = touched & PACKETS_OF[part];
+        while touched != 0 {
+            let packet = touched.trailing_zeros() as usize;
+            touched &= touched - 1;
+            if covered & (1 << packet) != 0 {
+                bundle.meet::<ALL>(packet, u16::MAX, shadow.triangle);
+            } else {
+                cast_on::<S, ALL>(bundle, packet, u16::MAX, shadow, &mut doubtful, tally);
+            }
         }
     }
+    doubtful.settle::<ALL>(bundle, shadow.triangle, around);
 }
 
 /// Casts it on some queries of a packet.
@@ -194,7 +201,7 @@ fn cast_on<S: Sixteen, const ALL: bool>(
     packet: usize,
     rays: u16,
     shadow: &Shadow<S>,
-    around: &Around,
+    doubtful: &mut Doubtful,
     tally: &mut Tally,
 ) {
     let open = bundle.open[packet] & rays;
@@ -202,15 +209,53 @@ fn cast_on<S: Sixteen, const ALL: bool>(
         return;
     }
     tally.triangle_tests += u64::from(open.count_ones());
-    let Cast { mut blocked, mut doubtful } = shadow.cast(&bundle.origins[packet], open);
-    while doubtful != 0 {
-        let query = doubtful.trailing_zeros();
-        doubtful &= doubtful - 1;
-        if settle(packet * PACKET + query as usize, shadow.triangle, around) {
-            blocked |= 1 << query;
+    let cast = shadow.cast(&bundle.origins[packet], open);
+    if cast.doubtful != 0 {
+        doubtful.packets |= 1 << packet;
+        doubtful.queries[packet] = cast.doubtful;
+    }
+    bundle.meet::<ALL>(packet, cast.blocked, shadow.triangle);
+}
+
+/// Queries that the exact test must decide about a triangle, once it has been cast on all: a call where it is cast would have its planes,
+/// sixteen vectors, written to memory and read again, for all triangles.
+struct Doubtful {
+    /// A bit a packet that has any.
+    packets: u16,
+    queries: [u16; PACKETS],
+}
+
+impl Doubtful {
+    const NONE: Self = Self { packets: 0, queries: [0; PACKETS] };
+
+    #[inline(always)]
+    fn settle<const ALL: bool>(&self, bundle: &mut Bundle, triangle: TriangleId, around: &Around) {
+        if self.packets != 0 {
+            self.settle_some::<ALL>(bundle, triangle, around);
         }
     }
-    bundle.meet::<ALL>(packet, blocked, shadow.triangle);
+
+    #[cold]
+    fn settle_some<const ALL: bool>(
+        &self,
+        bundle: &mut Bundle,
+        triangle: TriangleId,
+        around: &Around,
+    ) {
+        let mut packets = self.packets;
+        while packets != 0 {
+            let packet = packets.trailing_zeros() as usize;
+            packets &= packets - 1;
+            let mut doubtful = self.queries[packet];
+            while doubtful != 0 {
+                let query = doubtful.trailing_zeros();
+                doubtful &= doubtful - 1;
+                if settle(packet * PACKET + query as usize, triangle, around) {
+                    bundle.meet::<ALL>(packet, 1 << query, triangle);
+                }
+            }
+        }
+    }
 }
 
 /// Decides one triangle for one query.

@@ -18,12 +18,14 @@
 //! Haines, Wallace: Shaft Culling for Efficient Ray-Cast Radiosity. Eurographics Workshop on Rendering 1991.
 //! Dmitriev, Havran, Seidel: Faster Ray Tracing with SIMD Shaft Culling. MPI-I-2004-4-006, 2004.
 
+mod alone;
 mod bundle;
 mod cast;
 mod cluster;
 mod columns;
 mod frustum;
 mod kept;
+mod nearest;
 mod order;
 mod planes;
 mod rays;

@@ -5,20 +5,20 @@
 //! apart, and its rays go on one by one. So rays that stay together share every step, and those that do not cost
 //! what they cost alone.
 
-use super::bundle::{Bundle, Chosen, PACKET, PACKETS};
-use super::cluster::{Alone, Tests};
+use super::alone::GoAlone;
+use super::bundle::{Bundle, Chosen, PACKETS};
+use super::cluster::{OfFew, OfPacket, OfPart, Tests};
 use super::columns::Columns;
 use super::frustum::{Met, Shaft};
 use super::kept::Kept;
+use super::nearest::Toward;
 use super::order::Order;
 use super::planes::Ground;
 use super::rays::PacketRays;
 use super::source::Source;
-use crate::exact::Exact;
 use crate::geometry::Triangles;
-use crate::geometry::intersect::RayLanes;
-use crate::geometry::lanes::{Lanes, Sixteen};
-use crate::occlusion::{Child, Clusters, Node, Tally, WIDTH};
+use crate::geometry::lanes::{Lanes, Sixteen, apart};
+use crate::occlusion::{Child, Clusters, Node, Tally};
 
 /// What is still to be visited: a node, by a part of the bundle.
 #[derive(Clone, Copy)]
@@ -42,6 +42,8 @@ pub(super) struct Walker {
     /// Packets whose rays are.
     rays_known: u32,
     kept: Kept,
+    /// Which nodes the bundle visits first.
+    toward: Toward,
     steps: Vec<Step>,
     /// The same for a ray that goes on alone.
     rest: Vec<u32>,
@@ -68,6 +70,7 @@ impl Walker {
             known: 0,
             rays_known: 0,
             kept: Kept::none(),
+            toward: Toward::NOWHERE,
             steps: Vec::new(),
             rest: Vec::new(),
             columns: Columns::default(),
@@ -77,7 +80,7 @@ impl Walker {
 
     /// From now on, bundles may be to another light.
     pub fn begin(&mut self) {
-        self.bundle.ground = None;
+        self.bundle.forget();
     }
 
     /// Settles all queries to this light: those that stay open are lit, or with `ALL`, all that they meet is noted. `false` if none
@@ -90,7 +93,14 @@ impl Walker {
         tally: &mut Tally,
     ) -> bool {
         let Around { triangles, queries, .. } = around;
+        // As its neighbours fared, the next bundle will.
+        let is_dark = self.bundle.is_dark();
         let Some(ground) = &self.bundle.fill::<L>(source, queries, triangles) else { return false };
+        self.toward = if is_dark {
+            Toward::the(source, ground.centre + self.bundle.boxes[1].middle())
+        } else {
+            Toward::NOWHERE
+        };
         if around.leaves_spread && self.bundle.is_spread(around.clusters.typical_extent()) {
             return false;
         }
@@ -177,16 +187,15 @@ impl Walker {
             return;
         }
         let mut clusters = found.met & node.clusters();
-        let mut nodes = found.met & !clusters;
-        while nodes != 0 {
-            let slot = nodes.trailing_zeros() as usize;
-            nodes &= nodes - 1;
+        self.toward.nearest_last(node, found.met & !clusters, |slot| {
             self.steps.push(Step { node: node.number(slot), ..step });
-        }
+        });
         while clusters != 0 {
             let slot = clusters.trailing_zeros() as usize;
             clusters &= clusters - 1;
-            self.tests(ground, around, tally).part::<L, ALL>(step.part.into(), node.number(slot));
+            let (part, cluster) = (step.part.into(), node.number(slot));
+            let tests = self.tests(ground, around, tally);
+            apart::<L, _>(OfPart::<ALL> { tests, part, cluster });
         }
     }
 
@@ -216,11 +225,13 @@ impl Walker {
             };
             match (child, rays.count_ones()) {
                 (_, 0) => {}
-                (Child::Cluster(number), COMPANY..) => {
-                    self.tests(ground, around, tally).packet::<L, ALL>(packet, rays, number);
+                (Child::Cluster(cluster), COMPANY..) => {
+                    let tests = self.tests(ground, around, tally);
+                    apart::<L, _>(OfPacket::<ALL> { tests, packet, rays, cluster });
                 }
-                (Child::Cluster(number), _) => {
-                    self.tests(ground, around, tally).few::<L, ALL>(packet, rays, number);
+                (Child::Cluster(cluster), _) => {
+                    let tests = self.tests(ground, around, tally);
+                    apart::<L, _>(OfFew::<ALL> { tests, packet, rays, cluster });
                 }
                 (Child::Node(node), COMPANY..) => {
                     self.steps.push(Step { met: rays, node, ..step });
@@ -237,41 +248,12 @@ impl Walker {
     fn go_alone<L: Lanes, const ALL: bool>(
         &mut self,
         packet: usize,
-        mut rays: u16,
+        rays: u16,
         node: u32,
         around: &Around,
         tally: &mut Tally,
     ) {
-        while rays != 0 {
-            let lane = rays.trailing_zeros() as usize;
-            rays &= rays - 1;
-            let ray = around.queries.ray(packet * PACKET + lane);
-            let lanes = RayLanes::<L>::of::<Exact>(ray);
-            let alone = Alone { packet, lane, ray, lanes: &lanes };
-            let shaft = Shaft::of_ray(ray, self.bundle.largest);
-            self.rest.clear();
-            self.rest.push(node);
-            'ray: while let Some(node) = self.rest.pop() {
-                tally.cells += 1;
-                let node = &around.clusters.nodes()[node as usize];
-                let met = shaft.meets::<L>(node).met;
-                let mut clusters = met & node.clusters();
-                let mut nodes = met & !clusters;
-                while clusters != 0 {
-                    let slot = clusters.trailing_zeros() as usize;
-                    clusters &= clusters - 1;
-                    tally.triangle_tests += WIDTH as u64;
-                    let cluster = &around.clusters.all()[node.number(slot) as usize];
-                    if alone.test::<ALL>(&mut self.bundle, cluster, around).is_break() {
-                        break 'ray;
-                    }
-                }
-                while nodes != 0 {
-                    let slot = nodes.trailing_zeros() as usize;
-                    nodes &= nodes - 1;
-                    self.rest.push(node.number(slot));
-                }
-            }
-        }
+        let Self { bundle, rest, .. } = self;
+        apart::<L, _>(GoAlone::<ALL> { packet, rays, node, bundle, rest, around, tally });
     }
 }

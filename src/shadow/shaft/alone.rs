@@ -1,0 +1,93 @@
+//! Rays that do not stay together, and go on one by one.
+
+use std::ops::ControlFlow::{self, Break, Continue};
+
+use super::bundle::{Bundle, PACKET};
+use super::frustum::Shaft;
+use super::walk::Around;
+use crate::exact::Exact;
+use crate::geometry::Ray;
+use crate::geometry::intersect::RayLanes;
+use crate::geometry::lanes::{Lanes, LanesJob};
+use crate::occlusion::{Cluster, Tally, WIDTH};
+
+/// A ray of a packet by itself.
+pub(super) struct Alone<'a, L: Lanes> {
+    packet: usize,
+    lane: usize,
+    ray: &'a Ray,
+    lanes: RayLanes<L>,
+}
+
+impl<'a, L: Lanes> Alone<'a, L> {
+    #[inline(always)]
+    pub fn new(around: &Around<'a>, packet: usize, lane: usize) -> Self {
+        let ray = around.queries.ray(packet * PACKET + lane);
+        Self { packet, lane, ray, lanes: RayLanes::<L>::of::<Exact>(ray) }
+    }
+
+    /// Tests the triangles of a cluster by the exact test. Breaks at the first that blocks, unless `ALL` are wanted.
+    #[inline(always)]
+    pub fn test<const ALL: bool>(
+        &self,
+        bundle: &mut Bundle,
+        cluster: &Cluster,
+        around: &Around,
+    ) -> ControlFlow<()> {
+        let hit = |triangle| {
+            bundle.meet::<ALL>(self.packet, 1 << self.lane, triangle);
+            if ALL { Continue(()) } else { Break(()) }
+        };
+        cluster.test_each::<Exact, L>(self.ray, &self.lanes, around.triangles, hit)
+    }
+}
+
+/// Some rays of a packet visit a node, and what is below it, one by one.
+pub(super) struct GoAlone<'a, 'b, const ALL: bool> {
+    pub packet: usize,
+    /// A bit each.
+    pub rays: u16,
+    pub node: u32,
+    pub bundle: &'a mut Bundle,
+    /// What is still to be visited.
+    pub rest: &'a mut Vec<u32>,
+    pub around: &'a Around<'b>,
+    pub tally: &'a mut Tally,
+}
+
+impl<const ALL: bool> LanesJob for GoAlone<'_, '_, ALL> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { packet, mut rays, node, bundle, rest, around, tally } = self;
+        while rays != 0 {
+            let alone = Alone::<L>::new(around, packet, rays.trailing_zeros() as usize);
+            rays &= rays - 1;
+            let shaft = Shaft::of_ray(alone.ray, bundle.largest);
+            rest.clear();
+            rest.push(node);
+            'ray: while let Some(node) = rest.pop() {
+                tally.cells += 1;
+                let node = &around.clusters.nodes()[node as usize];
+                let met = shaft.meets::<L>(node).met;
+                let mut clusters = met & node.clusters();
+                let mut nodes = met & !clusters;
+                while clusters != 0 {
+                    let slot = clusters.trailing_zeros() as usize;
+                    clusters &= clusters - 1;
+                    tally.triangle_tests += WIDTH as u64;
+                    let cluster = &around.clusters.all()[node.number(slot) as usize];
+                    if alone.test::<ALL>(bundle, cluster, around).is_break() {
+                        break 'ray;
+                    }
+                }
+                while nodes != 0 {
+                    let slot = nodes.trailing_zeros() as usize;
+                    nodes &= nodes - 1;
+                    rest.push(node.number(slot));
+                }
+            }
+        }
+    }
+}
