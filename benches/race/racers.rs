@@ -111,7 +111,7 @@ pub struct Ready<'a> {
     rehearsal: Option<Rehearsal<'a>>,
 }
 
-/// Prepares what somebody will prepare while he answers.
+/// Prepares what somebody may prepare while he answers.
 type Rehearsal<'a> = Rc<dyn Fn() + 'a>;
 
 /// All of ours, over the grid.
@@ -176,8 +176,9 @@ impl<'a> Racer<'a> {
     /// Answers a part. Who asks has just written the queries: so they are read once before time is taken, and come from a near
     /// cache, whoever ran before.
     ///
-    /// Before the first one, who prepares while he answers rehearses that. All others have been prepared several times by then, and the least counts;
-    /// the first time may take thrice as long, in memory that no program has used for long.
+    /// Before the first one, who prepares while he answers rehearses that, whether he will do it or not. All others have
+    /// been prepared up to three times by then, and the least counts; the first time may take thrice as long, in memory
+    /// that no program has used for long.
     pub fn run(&mut self, runs: &[Run]) {
         if let Some(rehearse) = self.rehearsal.take() {
             rehearse();

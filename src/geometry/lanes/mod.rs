@@ -62,8 +62,8 @@ impl<J: LanesJob, L: Lanes> Kernel for InLanes<J, L> {
 
 /// Does a job as a function of its own, called by code that is compiled for the same lanes.
 ///
-/// What many loops of one function need, they take each other's registers for, and which of them lose them is chance: shafts
-/// in one piece took up to 16 % more time for changes that had nothing to do with it.
+/// Loops in one function compete for registers, and which of them loses is chance: shafts, walked and tested in one
+/// piece, took up to 16 % more time for changes elsewhere in it.
 #[inline(always)]
 pub(crate) fn apart<L: Lanes, J: LanesJob>(job: J) -> J::Answer {
     L::run_apart(InLanes::<J, L>(job, PhantomData))
@@ -80,7 +80,7 @@ pub trait Lanes: Copy {
 
     /// Runs a kernel, compiled for the instruction set of these lanes.
     fn run<K: Kernel>(kernel: K) -> K::Answer;
-    /// The same as a function of its own, which none is merged with: see [`apart`].
+    /// The same as a function of its own, which is not merged with its caller.
     fn run_apart<K: Kernel>(kernel: K) -> K::Answer;
     /// The same value in every lane.
     fn splat(value: f32) -> Self;

@@ -121,8 +121,8 @@ pub(super) struct Bundle {
     views: [View; 2 * PACKETS],
     /// The bases of the parts' rays: of queries that are sorted, as far as they are known; of others, the boxes.
     pub bases: [OriginBox; 2 * PACKETS],
-    /// Bases and boxes of the packets, side by side, if that is known.
-    pub beside: [Boxes; 2],
+    /// Bases and boxes of the packets, side by side.
+    beside: [Boxes; 2],
     is_beside_known: bool,
     /// A bit a query that is a ray to the light.
     pub asked: [u16; PACKETS],
@@ -161,7 +161,7 @@ impl Bundle {
         self.asked = [0; PACKETS];
     }
 
-    /// Whether what was asked last is dark.
+    /// Whether what was asked last is dark. Not where all that is met is noted, nor what was passed on, as all of that stays open.
     #[inline(always)]
     pub fn is_dark(&self) -> bool {
         let (mut asked, mut open) = (0, 0);
@@ -299,6 +299,13 @@ impl Bundle {
         if !self.is_beside_known {
             self.put_beside(centre);
         }
+    }
+
+    /// The bases and boxes of the packets, side by side. They are known: a call here would stand among the uses of a triangle's planes.
+    #[inline(always)]
+    pub fn beside(&self) -> &[Boxes; 2] {
+        debug_assert!(self.is_beside_known);
+        &self.beside
     }
 
     // Not inline: what is once a bundle should not push what is once a triangle out of registers.

@@ -26,19 +26,21 @@ pub(super) struct Tests<'a, 'b> {
 }
 
 /// Tests the triangles of a cluster for a part of the bundle that has several packets.
-pub(super) struct OfPart<'a, 'b, const ALL: bool> {
+pub(super) struct TestPart<'a, 'b, const ALL: bool> {
     pub tests: Tests<'a, 'b>,
     pub part: usize,
     pub cluster: u32,
 }
 
-impl<const ALL: bool> LanesJob for OfPart<'_, '_, ALL> {
+impl<const ALL: bool> LanesJob for TestPart<'_, '_, ALL> {
     type Answer = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { tests: Tests { bundle, kept, ground, around, tally }, part, cluster } = self;
-        bundle.know_beside(ground.centre);
+        if is_worth_judging(part) {
+            bundle.know_beside(ground.centre);
+        }
         let mut shadows = Shadows::on::<L>(bundle, part, kept, ground, around, cluster);
         while let Some(shadow) = shadows.next::<L::Sixteen>() {
             cast::<_, ALL>(bundle, part, &shadow, around, tally);
@@ -47,14 +49,14 @@ impl<const ALL: bool> LanesJob for OfPart<'_, '_, ALL> {
 }
 
 /// Tests them for some rays of a packet.
-pub(super) struct OfPacket<'a, 'b, const ALL: bool> {
+pub(super) struct TestPacket<'a, 'b, const ALL: bool> {
     pub tests: Tests<'a, 'b>,
     pub packet: usize,
     pub rays: u16,
     pub cluster: u32,
 }
 
-impl<const ALL: bool> LanesJob for OfPacket<'_, '_, ALL> {
+impl<const ALL: bool> LanesJob for TestPacket<'_, '_, ALL> {
     type Answer = ();
 
     #[inline(always)]
@@ -73,14 +75,14 @@ impl<const ALL: bool> LanesJob for OfPacket<'_, '_, ALL> {
 
 /// Tests them for few rays of a packet, one by one: by their planes if these are there; to make them for so few takes longer
 /// than a test.
-pub(super) struct OfFew<'a, 'b, const ALL: bool> {
+pub(super) struct TestFew<'a, 'b, const ALL: bool> {
     pub tests: Tests<'a, 'b>,
     pub packet: usize,
     pub rays: u16,
     pub cluster: u32,
 }
 
-impl<const ALL: bool> LanesJob for OfFew<'_, '_, ALL> {
+impl<const ALL: bool> LanesJob for TestFew<'_, '_, ALL> {
     type Answer = ();
 
     #[inline(always)]
@@ -162,6 +164,12 @@ impl<'a> Shadows<'a> {
     }
 }
 
+/// Whether boxes of a part's packets are looked at before a triangle is cast on them.
+#[inline(always)]
+fn is_worth_judging(part: usize) -> bool {
+    PACKETS_OF[part].count_ones() as usize >= WORTH_JUDGING
+}
+
 /// Casts the shadow of one triangle on a part of the bundle.
 #[inline(always)]
 fn cast<S: Sixteen, const ALL: bool>(
@@ -172,14 +180,14 @@ fn cast<S: Sixteen, const ALL: bool>(
     tally: &mut Tally,
 ) {
     let mut doubtful = Doubtful::NONE;
-    let (first, last) = packets_of(part);
     // Without a side the signs of planes say nothing by themselves.
-    if shadow.unsided || last - first < WORTH_JUDGING {
+    if shadow.unsided || !is_worth_judging(part) {
+        let (first, last) = packets_of(part);
         for packet in first..last {
             cast_on::<S, ALL>(bundle, packet, u16::MAX, shadow, &mut doubtful, tally);
         }
     } else {
-        let Judged { touched, covered } = shadow.judge(&bundle.beside);
+        let Judged { touched, covered } = shadow.judge(bundle.beside());
         let mut touched = touched & PACKETS_OF[part];
         while touched != 0 {
             let packet = touched.trailing_zeros() as usize;
@@ -212,13 +220,13 @@ fn cast_on<S: Sixteen, const ALL: bool>(
     let cast = shadow.cast(&bundle.origins[packet], open);
     if cast.doubtful != 0 {
         doubtful.packets |= 1 << packet;
-        doubtful.queries[packet] = cast.doubtful;
+        doubtful.queries[packet] |= cast.doubtful;
     }
     bundle.meet::<ALL>(packet, cast.blocked, shadow.triangle);
 }
 
-/// Queries that the exact test must decide about a triangle, once it has been cast on all: a call where it is cast would have its planes,
-/// sixteen vectors, written to memory and read again, for all triangles.
+/// Queries that the exact test must decide about a triangle, once it has been cast on all: a call where it is
+/// cast would have its planes, sixteen vectors, written to memory and read again, for all triangles.
 struct Doubtful {
     /// A bit a packet that has any.
     packets: u16,

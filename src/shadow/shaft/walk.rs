@@ -7,7 +7,7 @@
 
 use super::alone::GoAlone;
 use super::bundle::{Bundle, Chosen, PACKETS};
-use super::cluster::{OfFew, OfPacket, OfPart, Tests};
+use super::cluster::{TestFew, TestPacket, TestPart, Tests};
 use super::columns::Columns;
 use super::frustum::{Met, Shaft};
 use super::kept::Kept;
@@ -93,11 +93,11 @@ impl Walker {
         tally: &mut Tally,
     ) -> bool {
         let Around { triangles, queries, .. } = around;
-        // As its neighbours fared, the next bundle will.
+        // As the bundle before fared, which is a neighbour mostly, this one will.
         let is_dark = self.bundle.is_dark();
         let Some(ground) = &self.bundle.fill::<L>(source, queries, triangles) else { return false };
         self.toward = if is_dark {
-            Toward::the(source, ground.centre + self.bundle.boxes[1].middle())
+            Toward::light(source, ground.centre + self.bundle.boxes[1].middle())
         } else {
             Toward::NOWHERE
         };
@@ -195,7 +195,7 @@ impl Walker {
             clusters &= clusters - 1;
             let (part, cluster) = (step.part.into(), node.number(slot));
             let tests = self.tests(ground, around, tally);
-            apart::<L, _>(OfPart::<ALL> { tests, part, cluster });
+            apart::<L, _>(TestPart::<ALL> { tests, part, cluster });
         }
     }
 
@@ -227,11 +227,11 @@ impl Walker {
                 (_, 0) => {}
                 (Child::Cluster(cluster), COMPANY..) => {
                     let tests = self.tests(ground, around, tally);
-                    apart::<L, _>(OfPacket::<ALL> { tests, packet, rays, cluster });
+                    apart::<L, _>(TestPacket::<ALL> { tests, packet, rays, cluster });
                 }
                 (Child::Cluster(cluster), _) => {
                     let tests = self.tests(ground, around, tally);
-                    apart::<L, _>(OfFew::<ALL> { tests, packet, rays, cluster });
+                    apart::<L, _>(TestFew::<ALL> { tests, packet, rays, cluster });
                 }
                 (Child::Node(node), COMPANY..) => {
                     self.steps.push(Step { met: rays, node, ..step });
