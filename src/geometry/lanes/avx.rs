@@ -263,7 +263,8 @@ impl Sixteen for Zmm {
     }
 }
 
-/// What runs a kernel with these features, merged with its caller or apart, and whether this CPU has them: of one list, so that what is compiled for is looked for.
+/// What runs a kernel with these features, merged with its caller or apart, and whether this CPU has them: of one list, so that
+/// what is compiled for is looked for.
 macro_rules! with_features {
     ($run:ident, $apart:ident, $is_available:ident: $($feature:tt),+) => {
         $(#[target_feature(enable = $feature)])+

@@ -40,7 +40,7 @@ impl Toward {
             Some(toward) if slots.count_ones() > 1 => {
                 let (sorted, count) = sorted(node, toward, slots);
                 for &(_, slot) in &sorted[..count] {
-                    // Below it anyway, and known to be.
+                    // A slot is less anyway; so the compiler knows, and checks no bounds.
                     put(slot as usize % WIDTH);
                 }
             }
