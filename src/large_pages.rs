@@ -3,6 +3,8 @@
 //! Building writes memory that was never touched, and the system clears it page by page at the first write: with pages of 4 KiB
 //! that was a sixth of the time in which clusters of a large scene were built. Embree asks for large pages too.
 
+use bytemuck::Zeroable;
+
 /// An empty vector with room for so many items.
 pub(crate) fn vec_with_room<T>(count: usize) -> Vec<T> {
     let mut vector = Vec::with_capacity(count);
@@ -10,9 +12,16 @@ pub(crate) fn vec_with_room<T>(count: usize) -> Vec<T> {
     vector
 }
 
+/// So many items of zeros. In memory that was never touched nothing is written.
+pub(crate) fn zeros<T: Zeroable>(count: usize) -> Vec<T> {
+    let mut vector = bytemuck::zeroed_vec(count);
+    advise(&mut vector[..]);
+    vector
+}
+
 /// Of no avail where the system does as it likes: what is in memory stays the same.
 #[cfg(target_os = "linux")]
-fn advise<T>(memory: &mut [std::mem::MaybeUninit<T>]) {
+fn advise<T>(memory: &mut [T]) {
     use rustix::mm::{Advice, madvise};
     /// On x86.
     const LARGE_PAGE: usize = 2 << 20;
@@ -27,11 +36,11 @@ fn advise<T>(memory: &mut [std::mem::MaybeUninit<T>]) {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn advise<T>(_: &mut [std::mem::MaybeUninit<T>]) {}
+fn advise<T>(_: &mut [T]) {}
 
 #[cfg(test)]
 mod tests {
-    use super::vec_with_room;
+    use super::{vec_with_room, zeros};
 
     #[test]
     fn a_vector_with_room_is_like_any_other() {
@@ -42,5 +51,12 @@ mod tests {
             assert!(vector.iter().copied().eq(0..count));
         }
         assert_eq!(vec_with_room::<()>(5), []);
+    }
+
+    #[test]
+    fn zeros_are_as_many_as_were_asked_for() {
+        for count in [0, 1, 1000, 3_000_000] {
+            assert!(zeros::<u32>(count).into_iter().eq(std::iter::repeat_n(0, count)));
+        }
     }
 }

@@ -4,6 +4,7 @@ mod bounds;
 mod hilbert;
 pub mod intersect;
 pub mod lanes;
+mod prefetch;
 pub(crate) mod random;
 mod ray;
 pub mod surface;
@@ -11,6 +12,7 @@ mod triangles;
 
 pub use bounds::Bounds;
 pub use hilbert::along_hilbert;
+pub(crate) use prefetch::prefetch;
 pub use ray::Ray;
 pub(crate) use triangles::NOBODY;
 pub use triangles::{Triangle, TriangleId, Triangles, is_finite};

@@ -3,10 +3,13 @@
 //! Gathering corners from all over the scene costs more than the test itself.
 
 use crate::geometry::lanes::{Available, Lanes, LanesJob, Vector};
-use crate::geometry::{TriangleId, Triangles};
+use crate::geometry::{TriangleId, Triangles, prefetch};
 
 /// Triangles of an [`Eight`], and of all that is made of them.
 pub const WIDTH: usize = 8;
+
+/// So many before they are made, triangles are announced.
+pub(crate) const AHEAD: usize = 8;
 
 /// The corners of eight triangles: corner, coordinate, triangle.
 #[derive(Clone, Debug)]
@@ -21,6 +24,15 @@ impl Eight {
         arithmetic: Available,
     ) -> Self {
         arithmetic.run(Gather { triangles, ids })
+    }
+
+    /// Has memory asked for the corners of triangles of which others will be made soon: there is little to do between, so it
+    /// would be waited for.
+    #[inline(always)]
+    pub(crate) fn announce(triangles: &Triangles, ids: &[TriangleId]) {
+        for &id in ids {
+            prefetch(&triangles.corners()[id as usize]);
+        }
     }
 
     /// The coordinates of a corner of all eight, by axis.

@@ -16,12 +16,12 @@ use rayon::prelude::*;
 use super::cells::{self, MANY, Part};
 use super::collapse::{Nodes, Tree};
 use super::divide::{Around, Divided, Item, divide, places_of};
-use super::few::{self, FEW};
-use super::{Cluster, Clusters, Node};
+use super::few::{self, FEW, Sweeps};
+use super::{Cluster, Clusters, Node, WIDTH};
 use crate::geometry::lanes::Available;
 use crate::geometry::{TriangleId, Triangles, is_finite};
-use crate::large_pages::vec_with_room;
-use crate::occlusion::Eight;
+use crate::large_pages::{vec_with_room, zeros};
+use crate::occlusion::eight::{AHEAD, Eight};
 
 /// Portions with fewer triangles are divided, and put into nodes, by one thread: what comes out depends on this, not on how many
 /// threads there are.
@@ -49,8 +49,7 @@ fn build_by_numbers(
         let id = id(number);
         Item::new(triangles.corners()[id as usize], id)
     };
-    let mut items = vec_with_room(count);
-    items.resize(count, Item(Around::NOTHING));
+    let mut items = zeros(count);
     let known = if count < MANY {
         items.iter_mut().enumerate().for_each(|(number, slot)| *slot = item(number));
         Known::Places(places_of(&items))
@@ -58,8 +57,7 @@ fn build_by_numbers(
         let places = Around::places_within(triangles.bounds().unwrap_or_default());
         Known::Part(cells::sort(&mut items, &places, item))
     };
-    let mut sorted = vec_with_room(count);
-    sorted.resize(count, 0);
+    let mut sorted: Vec<TriangleId> = zeros(count);
     let all = Portion { items: &mut items, sorted: &mut sorted, first: 0, known };
     let tree = Builder { arithmetic: Available::newest_for_short_integers() }.tree(all);
     drop(items);
@@ -67,6 +65,8 @@ fn build_by_numbers(
     nodes.shrink_to_fit();
     let arithmetic = Available::newest();
     let cluster = |run: Range<u32>| {
+        let soon = run.start as usize + AHEAD * WIDTH;
+        Eight::announce(triangles, sorted.get(soon..soon + run.len()).unwrap_or_default());
         let run = &sorted[run.start as usize..run.end as usize];
         let ids = std::array::from_fn(|lane| run[lane.min(run.len() - 1)]);
         Cluster { corners: Eight::new(triangles, &ids, arithmetic), ids }
@@ -108,7 +108,7 @@ impl Builder {
         let count = portion.items.len();
         if count < WORTH_A_THREAD {
             let mut tree = Tree::with_room(count);
-            self.add(&mut tree, portion);
+            self.add(&mut tree, portion, &mut Sweeps::new());
             return tree.collapsed();
         }
         let [left, right] = self.divide(portion);
@@ -117,14 +117,15 @@ impl Builder {
     }
 
     /// Adds a portion to a tree.
-    fn add(self, tree: &mut Tree, portion: Portion) {
+    fn add(self, tree: &mut Tree, portion: Portion, sweeps: &mut Sweeps) {
         if portion.items.len() <= FEW {
-            return few::add(tree, portion.items, portion.sorted, portion.first, self.arithmetic);
+            let Portion { items, sorted, first, .. } = portion;
+            return few::add(tree, items, sorted, first, sweeps, self.arithmetic);
         }
         let [left, right] = self.divide(portion);
-        self.add(tree, left);
+        self.add(tree, left, sweeps);
         let left = tree.last();
-        self.add(tree, right);
+        self.add(tree, right, sweeps);
         tree.join(left);
     }
 

@@ -12,6 +12,7 @@ use glam::{Vec3, Vec4};
 
 use super::divide::{Around, Heap, INTEGERS, Item, TO_FLOOR};
 use super::few::FEW;
+use crate::large_pages::vec_with_room;
 
 /// Fewer items are divided one cut at a time: two passes over a grid of its own cost a range of these as much.
 pub(super) const MANY: usize = 512;
@@ -39,7 +40,8 @@ pub(super) struct Part {
 /// or somewhat larger.
 pub(super) fn sort(sorted: &mut [Item], places: &Around, item: impl Fn(usize) -> Item) -> Part {
     let mut cells = Cells::new(sorted.len(), places);
-    let cell_of: Vec<u16> = (0..sorted.len()).map(|number| cells.count(&item(number))).collect();
+    let mut cell_of = vec_with_room(sorted.len());
+    cell_of.extend((0..sorted.len()).map(|number| cells.count(&item(number))));
     let part = cells.divide(cells.all(), 0..sorted.len());
     for (number, &cell) in cell_of.iter().enumerate() {
         let place = &mut cells.next[usize::from(cell)];
@@ -62,6 +64,9 @@ struct Cells {
     boxes: Vec<Around>,
     /// Where the next item of a cell is to go.
     next: Vec<u32>,
+    /// Lent to each region: the slabs of cells across each axis, and all that is right of each along one.
+    slabs: [[Heap; MOST_ALONG]; 3],
+    right: [Heap; MOST_ALONG + 1],
 }
 
 impl Cells {
@@ -91,6 +96,8 @@ impl Cells {
             counts: vec![0; cells],
             boxes: vec![Around::NOTHING; cells],
             next: vec![0; cells],
+            slabs: [[Heap::EMPTY; MOST_ALONG]; 3],
+            right: [Heap::EMPTY; MOST_ALONG + 1],
         }
     }
 
@@ -140,23 +147,26 @@ impl Cells {
     }
 
     /// The cheapest cut that leaves enough on both sides.
-    fn best_cut(&self, region: Region) -> Option<Cut> {
-        let mut slabs = [[Heap::EMPTY; MOST_ALONG]; 3];
+    fn best_cut(&mut self, region: Region) -> Option<Cut> {
+        for axis in 0..3 {
+            self.slabs[axis][region.low[axis]..region.high[axis]].fill(Heap::EMPTY);
+        }
         for (y, z) in region.rows() {
             for x in region.low[0]..region.high[0] {
                 let cell = self.row(y, z) | x;
                 let slab = Heap { count: self.counts[cell] as usize, around: self.boxes[cell] };
                 if slab.count > 0 {
-                    slabs[0][x].join(&slab);
-                    slabs[1][y].join(&slab);
-                    slabs[2][z].join(&slab);
+                    self.slabs[0][x].join(&slab);
+                    self.slabs[1][y].join(&slab);
+                    self.slabs[2][z].join(&slab);
                 }
             }
         }
         let (mut best, mut least) = (None, f32::INFINITY);
-        for (axis, slabs) in slabs.iter().enumerate() {
+        let right = &mut self.right;
+        for (axis, slabs) in self.slabs.iter().enumerate() {
             let cells = region.low[axis]..region.high[axis];
-            let mut right = [Heap::EMPTY; MOST_ALONG + 1];
+            right[cells.end] = Heap::EMPTY;
             for at in cells.clone().rev() {
                 right[at] = right[at + 1];
                 right[at].join(&slabs[at]);

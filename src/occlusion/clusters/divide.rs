@@ -1,5 +1,6 @@
 //! Where to divide a range of triangles, and doing so: at the boundary of a bin, in one pass without branches.
 
+use bytemuck::Zeroable;
 use glam::{Vec3, Vec3A, Vec4, Vec4Swizzles};
 
 use super::WIDTH;
@@ -16,7 +17,8 @@ pub(super) const INTEGERS: f32 = (1 << (f32::MANTISSA_DIGITS - 1)) as f32;
 pub(super) const TO_FLOOR: f32 = 0.4999;
 
 /// A box in two vectors of four; the fourth coordinates mean nothing.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Zeroable)]
+#[repr(C)]
 pub(super) struct Around {
     low: Vec4,
     high: Vec4,
@@ -59,6 +61,12 @@ impl Around {
         self.high = self.high.max(place);
     }
 
+    /// How long it is along each axis.
+    #[inline(always)]
+    pub fn extent(&self) -> Vec4 {
+        self.high - self.low
+    }
+
     /// Half of its surface; 0 of nothing.
     #[inline(always)]
     pub fn half_area(&self) -> f32 {
@@ -73,7 +81,8 @@ impl Around {
 }
 
 /// A triangle while its cluster is sought: its box, and its number in bits of the fourth coordinate.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Zeroable)]
+#[repr(transparent)]
 pub(super) struct Item(pub Around);
 
 impl Item {

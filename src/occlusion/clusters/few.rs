@@ -6,6 +6,8 @@
 //! say which; to sort is to count, for each, how many come before it, which vectors do without a branch; and all of it is one job in
 //! those vectors. *A part* is here a row of such bytes.
 
+use glam::{Mat4, Vec4};
+
 use super::WIDTH;
 use super::collapse::Tree;
 use super::divide::{Around, INTEGERS, Item};
@@ -29,9 +31,10 @@ pub(super) fn add(
     items: &[Item],
     sorted: &mut [TriangleId],
     first: u32,
+    sweeps: &mut Sweeps,
     arithmetic: Available,
 ) {
-    let Arranged { order, cuts } = arithmetic.run(Arrange { items });
+    let Arranged { order, cuts } = arithmetic.run(Arrange { items, sweeps });
     let order = &order[..items.len()];
     for (id, &number) in sorted.iter_mut().zip(order) {
         *id = items[usize::from(number)].id();
@@ -75,6 +78,7 @@ struct Arranged {
 
 struct Arrange<'a> {
     items: &'a [Item],
+    sweeps: &'a mut Sweeps,
 }
 
 impl LanesJob for Arrange<'_> {
@@ -82,7 +86,7 @@ impl LanesJob for Arrange<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Arranged {
-        let Self { items } = self;
+        let Self { items, sweeps } = self;
         let (mut order, mut cuts) = ([0; FEW], [0; 2 * FEW]);
         for (number, place) in order.iter_mut().enumerate() {
             *place = number as u8;
@@ -97,7 +101,7 @@ impl LanesJob for Arrange<'_> {
                 open -= 1;
                 start += part.len();
             } else {
-                let at = divide(items, part);
+                let at = divide(items, part, sweeps);
                 cuts[number] = at as u8;
                 ends[open] = (start + at) as u8;
                 open += 1;
@@ -110,8 +114,8 @@ impl LanesJob for Arrange<'_> {
 
 /// Sorts some items, more than a cluster has; after how many to cut them.
 #[inline(always)]
-fn divide(items: &[Item], order: &mut [u8]) -> usize {
-    if sort(items, order) { cheapest_cut(items, order) } else { order.len() / 2 }
+fn divide(items: &[Item], order: &mut [u8], sweeps: &mut Sweeps) -> usize {
+    if sort(items, order) { cheapest_cut(items, order, sweeps) } else { order.len() / 2 }
 }
 
 /// Sorts them along the longest axis of the box around their places; what is closer than a 255th of it stays in its order.
@@ -151,36 +155,81 @@ fn sort(items: &[Item], order: &mut [u8]) -> bool {
 
 /// After how many of those that are sorted.
 #[inline(always)]
-fn cheapest_cut(items: &[Item], order: &[u8]) -> usize {
+fn cheapest_cut(items: &[Item], order: &[u8], sweeps: &mut Sweeps) -> usize {
     let count = order.len();
-    let mut right = [0.0; FEW];
-    let mut around = Around::NOTHING;
-    for number in (1..count).rev() {
-        around.join(&items[usize::from(order[number])].0);
-        right[number] = around.half_area() * CLUSTERS[count - number];
-    }
-    // Where no cost is a number, in the middle.
-    let (mut best, mut least) = (count / 2, f32::INFINITY);
-    let mut around = Around::NOTHING;
+    let Sweeps { left, right, costs } = sweeps;
+    let (mut left_around, mut right_around) = (Around::NOTHING, Around::NOTHING);
     for number in 1..count {
-        around.join(&items[usize::from(order[number - 1])].0);
-        let cost = around.half_area() * CLUSTERS[number] + right[number];
-        if cost < least {
-            (best, least) = (number, cost);
+        left_around.join(&items[usize::from(order[number - 1])].0);
+        left[number] = left_around.extent();
+        right_around.join(&items[usize::from(order[count - number])].0);
+        right[count - number] = right_around.extent();
+    }
+    // No cut before the first, and none after the last.
+    left[0] = Vec4::INFINITY;
+    left[count..count.next_multiple_of(AT_ONCE)].fill(Vec4::INFINITY);
+    let (left_clusters, right_clusters) = (&CLUSTERS.0, &CLUSTERS.1[FEW - count..]);
+    let mut least = Vec4::INFINITY;
+    let costs = &mut costs[..count.div_ceil(AT_ONCE)];
+    for (block, costs) in costs.iter_mut().enumerate() {
+        let first = block * AT_ONCE;
+        let left = half_areas(&left[first..]) * Vec4::from_slice(&left_clusters[first..]);
+        let right = half_areas(&right[first..]) * Vec4::from_slice(&right_clusters[first..]);
+        *costs = left + right;
+        least = costs.min(least);
+    }
+    let least = least.min_element();
+    if least < f32::INFINITY {
+        for (block, costs) in costs.iter().enumerate() {
+            let found = costs.cmpeq(Vec4::splat(least)).bitmask();
+            if found != 0 {
+                return block * AT_ONCE + found.trailing_zeros() as usize;
+            }
         }
     }
-    best
+    // No cost is a number.
+    count / 2
 }
 
-/// How many clusters so many triangles take. `Heap::cost`, which divides, would do; building takes some 2 % more with it.
-const CLUSTERS: [f32; FEW + 1] = {
-    let mut clusters = [0.0; FEW + 1];
-    let mut count = 0;
+/// Cuts that are weighed at once.
+const AT_ONCE: usize = 4;
+
+/// Room for what cuts leave on either side, lent to each of many parts.
+pub(super) struct Sweeps {
+    /// The extents of boxes.
+    left: [Vec4; FEW],
+    right: [Vec4; FEW],
+    costs: [Vec4; FEW / AT_ONCE],
+}
+
+impl Sweeps {
+    pub const fn new() -> Self {
+        Self {
+            left: [Vec4::ZERO; FEW],
+            right: [Vec4::ZERO; FEW],
+            costs: [Vec4::ZERO; FEW / AT_ONCE],
+        }
+    }
+}
+
+/// Half of the surfaces of the first four boxes, of which these are the extents.
+#[inline(always)]
+fn half_areas(extents: &[Vec4]) -> Vec4 {
+    let sides = Mat4::from_cols(extents[0], extents[1], extents[2], extents[3]).transpose();
+    let [x, y, z] = [sides.x_axis, sides.y_axis, sides.z_axis].map(|side| side.max(Vec4::ZERO));
+    x * y + y * z + z * x
+}
+
+/// How many clusters so many triangles take, and, of [`FEW`], so many less.
+static CLUSTERS: ([f32; FEW + AT_ONCE], [f32; FEW + AT_ONCE]) = {
+    let (mut left, mut right) = ([1.0; FEW + AT_ONCE], [1.0; FEW + AT_ONCE]);
+    let mut count = 1;
     while count <= FEW {
-        clusters[count] = count.div_ceil(WIDTH) as f32;
+        left[count] = count.div_ceil(WIDTH) as f32;
+        right[FEW - count] = left[count];
         count += 1;
     }
-    clusters
+    (left, right)
 };
 
 /// Keys that are counted for at once at least: two vectors of AVX2, four of SSE2.
@@ -211,6 +260,7 @@ mod tests {
     use glam::Vec3A;
     use proptest::prelude::*;
 
+    use super::super::divide::items_at;
     use super::*;
 
     /// Cubes that begin here along the first axis.
@@ -254,7 +304,7 @@ mod tests {
         ) {
             let items = items(&places);
             let arranged = |arithmetic: Available| {
-                let arranged = arithmetic.run(Arrange { items: &items });
+                let arranged = arithmetic.run(Arrange { items: &items, sweeps: &mut Sweeps::new() });
                 (arranged.order[..items.len()].to_vec(), arranged.cuts)
             };
             let all: Vec<_> = Available::all().map(arranged).collect();
@@ -265,13 +315,41 @@ mod tests {
 
             let mut sorted = vec![TriangleId::MAX; items.len()];
             let mut tree = Tree::default();
-            add(&mut tree, &items, &mut sorted, 0, Available::newest());
+            add(&mut tree, &items, &mut sorted, 0, &mut Sweeps::new(), Available::newest());
             let runs = tree.into_nodes().runs;
             prop_assert!(runs.iter().all(|run| (1..=WIDTH).contains(&run.len())));
             prop_assert_eq!(runs.iter().map(ExactSizeIterator::len).sum::<usize>(), items.len());
             sorted.sort_unstable();
             prop_assert!(sorted.into_iter().eq(0..items.len() as TriangleId));
         }
+    }
+
+    proptest! {
+        #[test]
+        fn no_cut_is_cheaper_than_the_one_that_is_found_and_none_before_it_is_as_cheap(
+            corners in prop::collection::vec((0u8..40, 0u8..9, 0u8..5), WIDTH + 1..=FEW),
+        ) {
+            let items = items_at(&corners);
+            let order = in_order(&items);
+            let area = |items: &[Item]| {
+                let mut around = Around::NOTHING;
+                items.iter().for_each(|item| around.join(&item.0));
+                around.half_area() * items.len().div_ceil(WIDTH) as f32
+            };
+            let cost = |at: usize| area(&items[..at]) + area(&items[at..]);
+            let found = cheapest_cut(&items, &order, &mut Sweeps::new());
+            prop_assert!((1..items.len()).contains(&found));
+            prop_assert!((1..found).all(|at| cost(at) > cost(found)));
+            prop_assert!((found..items.len()).all(|at| cost(at) >= cost(found)));
+        }
+    }
+
+    #[test]
+    fn where_no_cost_is_a_number_the_cut_is_in_the_middle() {
+        let far = |n: u8| f32::from(n) * f32::MAX / 16.0;
+        let item = |n: u8| Item::new([Vec3A::splat(-far(n)), Vec3A::splat(far(n)), Vec3A::ZERO], 0);
+        let items: Vec<Item> = (3..16).map(item).collect();
+        assert_eq!(cheapest_cut(&items, &in_order(&items), &mut Sweeps::new()), 6);
     }
 
     #[test]
@@ -296,7 +374,7 @@ mod tests {
             let places: Vec<f32> = (first..40).map(far).collect();
             let items = items(&places);
             let mut order = in_order(&items);
-            let at = divide(&items, &mut order);
+            let at = divide(&items, &mut order, &mut Sweeps::new());
             assert_eq!(at, 24 - usize::from(first));
             assert!(order[..at].iter().all(|&number| places[usize::from(number)] < 100.0));
         }
@@ -305,6 +383,6 @@ mod tests {
     #[test]
     fn items_in_one_place_are_halved() {
         let items = items(&[7.0; 80]);
-        assert_eq!(divide(&items, &mut in_order(&items)), 40);
+        assert_eq!(divide(&items, &mut in_order(&items), &mut Sweeps::new()), 40);
     }
 }

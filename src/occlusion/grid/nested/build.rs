@@ -23,8 +23,7 @@ use super::{Cube, MOST, NestedGrid, Node, SLOTS, Threads};
 use crate::geometry::lanes::Available;
 use crate::geometry::{Bounds, TriangleId, Triangles, is_finite};
 use crate::large_pages::vec_with_room;
-use crate::occlusion::Eight;
-use crate::occlusion::eight::WIDTH;
+use crate::occlusion::eight::{AHEAD, Eight, WIDTH};
 
 /// A voxel with at most so many triangles, six vectors full, is never divided.
 pub(super) const FEW: usize = 48;
@@ -336,9 +335,13 @@ impl<'a> Sorter<'a> {
         grid.order.shrink_to_fit();
         let arithmetic = Available::newest();
         let (ids, _) = grid.order.as_chunks::<WIDTH>();
-        let eight = |ids| Eight::new(self.triangles, ids, arithmetic);
+        let eight = |number: usize| {
+            let soon = ids.get(number + AHEAD).map_or(&[][..], |ids| ids);
+            Eight::announce(self.triangles, soon);
+            Eight::new(self.triangles, &ids[number], arithmetic)
+        };
         grid.eights = vec_with_room(ids.len());
-        let shared = ids.par_iter().with_min_len(self.threads.least());
+        let shared = (0..ids.len()).into_par_iter().with_min_len(self.threads.least());
         shared.map(eight).collect_into_vec(&mut grid.eights);
         grid
     }
