@@ -2,7 +2,7 @@
 //!
 //! Anywhere, not only between full clusters: two that are not full but apart are often cheaper than one and a rest.
 //!
-//! A quarter of the time of building is spent here. So items stay where they are, in the nearest cache, and bytes are sorted that
+//! A third of the time of building is spent here. So items stay where they are, in the nearest cache, and bytes are sorted that
 //! say which; to sort is to count, for each, how many come before it, which vectors do without a branch; and all of it is one job in
 //! those vectors. *A part* is here a row of such bytes.
 
