@@ -3,7 +3,7 @@
 use std::ops::ControlFlow::{self, Break, Continue};
 
 use super::bundle::{Bundle, PACKET};
-use super::frustum::Shaft;
+use super::rays::PacketRays;
 use super::walk::Around;
 use crate::exact::Exact;
 use crate::geometry::Ray;
@@ -47,6 +47,8 @@ pub(super) struct GoAlone<'a, 'b, const ALL: bool> {
     pub packet: usize,
     /// A bit each.
     pub rays: u16,
+    /// All of the packet's.
+    pub of_packet: &'a PacketRays,
     pub node: u32,
     pub bundle: &'a mut Bundle,
     /// What is still to be visited.
@@ -60,11 +62,11 @@ impl<const ALL: bool> LanesJob for GoAlone<'_, '_, ALL> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { packet, mut rays, node, bundle, rest, around, tally } = self;
+        let Self { packet, mut rays, of_packet, node, bundle, rest, around, tally } = self;
         while rays != 0 {
-            let alone = Alone::<L>::new(around, packet, rays.trailing_zeros() as usize);
+            let lane = rays.trailing_zeros() as usize;
             rays &= rays - 1;
-            let shaft = Shaft::of_ray(alone.ray, bundle.largest);
+            let shaft = of_packet.shaft(lane % PACKET);
             rest.clear();
             rest.push(node);
             'ray: while let Some(node) = rest.pop() {
@@ -73,13 +75,17 @@ impl<const ALL: bool> LanesJob for GoAlone<'_, '_, ALL> {
                 let met = shaft.meets::<L>(node).met;
                 let mut clusters = met & node.clusters();
                 let mut nodes = met & !clusters;
-                while clusters != 0 {
-                    let slot = clusters.trailing_zeros() as usize;
-                    clusters &= clusters - 1;
-                    tally.triangle_tests += WIDTH as u64;
-                    let cluster = &around.clusters.all()[node.number(slot) as usize];
-                    if alone.test::<ALL>(bundle, cluster, around).is_break() {
-                        break 'ray;
+                if clusters != 0 {
+                    // Not before: many rays come to no cluster, and this reads the query.
+                    let alone = Alone::<L>::new(around, packet, lane);
+                    while clusters != 0 {
+                        let slot = clusters.trailing_zeros() as usize;
+                        clusters &= clusters - 1;
+                        tally.triangle_tests += WIDTH as u64;
+                        let cluster = &around.clusters.all()[node.number(slot) as usize];
+                        if alone.test::<ALL>(bundle, cluster, around).is_break() {
+                            break 'ray;
+                        }
                     }
                 }
                 while nodes != 0 {

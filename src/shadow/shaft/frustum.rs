@@ -18,11 +18,10 @@
 //!
 //! Haines, Wallace: Shaft Culling for Efficient Ray-Cast Radiosity. Eurographics Workshop on Rendering 1991.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use super::bundle::OriginBox;
 use super::source::Source;
-use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
 use crate::occlusion::{Node, WIDTH};
 
@@ -30,17 +29,17 @@ use crate::occlusion::{Node, WIDTH};
 pub(super) const PAD: f32 = 1.0 / (1 << 20) as f32;
 
 /// Stands for the inverse of a slope of zero.
-const STEEPEST: f32 = 1e30;
+pub(super) const STEEPEST: f32 = 1e30;
 
 /// The shaft of a part of a bundle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shaft {
     /// Of the upper side by axis: where it is at t = 0, and t for a unit of way.
-    upper: [f32; 3],
-    upper_inverse: [f32; 3],
+    upper: Vec3A,
+    upper_inverse: Vec3A,
     /// Of the lower side.
-    lower: [f32; 3],
-    lower_inverse: [f32; 3],
+    lower: Vec3A,
+    lower_inverse: Vec3A,
     end: f32,
     /// The longest side of the box of origins.
     extent: f32,
@@ -53,52 +52,57 @@ pub(super) struct Met {
     pub narrower: u32,
 }
 
-pub(super) fn inverse(slope: f32) -> f32 {
-    let inverse = slope.recip();
-    if inverse.abs() < STEEPEST { inverse } else { STEEPEST.copysign(slope) }
+#[inline(always)]
+fn inverse(slope: Vec3A) -> Vec3A {
+    slope.recip().max(Vec3A::splat(-STEEPEST)).min(Vec3A::splat(STEEPEST))
 }
 
 impl Shaft {
     pub const EMPTY: Self = Self {
-        upper: [0.0; 3],
-        upper_inverse: [0.0; 3],
-        lower: [0.0; 3],
-        lower_inverse: [0.0; 3],
+        upper: Vec3A::ZERO,
+        upper_inverse: Vec3A::ZERO,
+        lower: Vec3A::ZERO,
+        lower_inverse: Vec3A::ZERO,
         end: 0.0,
         extent: 0.0,
         narrows: false,
     };
 
-    pub fn new(source: &Source, centre: Vec3, origins: &OriginBox, largest: f32) -> Self {
-        let pad = Vec3::splat(PAD * largest);
-        let (low, high) = (centre + origins.low - pad, centre + origins.high + pad);
-        let extent = (origins.high - origins.low).max_element();
-        let (upper, lower, rise, fall) = match *source {
-            Source::Point(light) => (light + pad, light - pad, high - light, low - light),
-            Source::Direction(direction) => (high, low, direction, direction),
-        };
-        Self {
-            upper: upper.to_array(),
-            upper_inverse: rise.to_array().map(inverse),
-            lower: lower.to_array(),
-            lower_inverse: fall.to_array().map(inverse),
-            end: source.end(),
-            extent,
-            narrows: matches!(source, Source::Point(_)),
+    /// Makes it that of a box of origins, in place: a copy of what was just written in parts would be waited for.
+    #[inline(always)]
+    pub fn set(&mut self, source: &Source, centre: Vec3, origins: &OriginBox, largest: f32) {
+        let pad = Vec3A::splat(PAD * largest);
+        let centre = Vec3A::from(centre);
+        let (low, high) = (Vec3A::from(origins.low), Vec3A::from(origins.high));
+        self.extent = (high - low).max_element();
+        let (low, high) = (centre + low - pad, centre + high + pad);
+        let (rise, fall);
+        match *source {
+            Source::Point(light) => {
+                let light = Vec3A::from(light);
+                (self.upper, self.lower) = (light + pad, light - pad);
+                (rise, fall) = (high - light, low - light);
+            }
+            Source::Direction(direction) => {
+                (self.upper, self.lower) = (high, low);
+                (rise, fall) = (Vec3A::from(direction), Vec3A::from(direction));
+            }
         }
+        self.upper_inverse = inverse(rise);
+        self.lower_inverse = inverse(fall);
+        self.end = source.end();
+        self.narrows = matches!(source, Source::Point(_));
     }
 
-    /// That of one ray.
+    /// That of one ray, from its origin, the inverses of its slopes, where it ends, and how far that may be off.
     #[inline(always)]
-    pub fn of_ray(ray: &Ray, largest: f32) -> Self {
-        let pad = Vec3::splat(PAD * largest);
-        let slope = ray.direction.to_array().map(inverse);
+    pub fn of_ray(origin: Vec3, slopes: [f32; 3], end: f32, pad: f32) -> Self {
         Self {
-            upper: (ray.origin + pad).to_array(),
-            upper_inverse: slope,
-            lower: (ray.origin - pad).to_array(),
-            lower_inverse: slope,
-            end: ray.end,
+            upper: (origin + pad).into(),
+            upper_inverse: slopes.into(),
+            lower: (origin - pad).into(),
+            lower_inverse: slopes.into(),
+            end,
             extent: 0.0,
             narrows: false,
         }

@@ -1,8 +1,10 @@
-//! The rays of a packet, for tests of one box by all of them: where a shaft is wider than a box.
+//! The rays of a packet, for tests of one box by all of them, where a shaft is wider than a box; and for those that go on alone.
+
+use glam::Vec3;
 
 use super::bundle::PACKET;
 use super::columns::Row;
-use super::frustum::{PAD, inverse};
+use super::frustum::{PAD, STEEPEST, Shaft};
 use super::planes::Ground;
 use super::source::Source;
 use crate::geometry::lanes::Sixteen;
@@ -12,7 +14,7 @@ use crate::occlusion::Node;
 /// again as all else.
 const PADS: f32 = 2.0;
 
-/// The rays of a packet, for tests of one box.
+/// The rays of a packet.
 #[derive(Clone, Copy)]
 pub(super) struct PacketRays {
     origins: [[f32; PACKET]; 3],
@@ -33,18 +35,24 @@ impl PacketRays {
         for (axis, Row(row)) in origins.iter().enumerate() {
             let origin = S::load(row).add(S::splat(ground.centre[axis]));
             origin.store(&mut self.origins[axis]);
-            match ground.source {
-                Source::Point(light) => {
-                    S::splat(light[axis]).sub(origin).store(&mut self.inverses[axis]);
-                }
-                Source::Direction(direction) => self.inverses[axis] = [direction[axis]; PACKET],
-            }
+            let slope = match ground.source {
+                Source::Point(light) => S::splat(light[axis]).sub(origin),
+                Source::Direction(direction) => S::splat(direction[axis]),
+            };
+            // Not one by one: the compiler put a coordinate of the three axes into a vector, with gathering and scattering, sixteen times.
+            let inverse = S::splat(1.0).div(slope);
+            let inverse = inverse.max(S::splat(-STEEPEST)).min(S::splat(STEEPEST));
+            inverse.store(&mut self.inverses[axis]);
         }
-        for inverses in &mut self.inverses {
-            for value in inverses {
-                *value = inverse(*value);
-            }
-        }
+    }
+
+    /// The shaft of one of them.
+    #[inline(always)]
+    pub fn shaft(&self, lane: usize) -> Shaft {
+        let [x, y, z] = &self.origins;
+        let origin = Vec3::new(x[lane], y[lane], z[lane]);
+        let [x, y, z] = &self.inverses;
+        Shaft::of_ray(origin, [x[lane], y[lane], z[lane]], self.end, self.pad)
     }
 
     /// The rays that meet a box of a node: a bit each.

@@ -113,7 +113,7 @@ impl Walker {
         }
         if around.queries.count() < COMPANY as usize {
             let asked = self.bundle.open[0];
-            self.go_alone::<L, ALL>(0, asked, 0, around, tally);
+            self.go_alone::<L, ALL>(0, asked, 0, ground, around, tally);
             return true;
         }
         self.steps.push(Step { part: 1, met: u16::MAX, node: 0 });
@@ -144,7 +144,7 @@ impl Walker {
         self.known |= 1 << part;
         self.bundle.know_base(part, ground.centre);
         let Bundle { bases, largest, .. } = &self.bundle;
-        self.shafts[part] = Shaft::new(&ground.source, ground.centre, &bases[part], *largest);
+        self.shafts[part].set(&ground.source, ground.centre, &bases[part], *largest);
     }
 
     /// The rays of a packet.
@@ -237,7 +237,7 @@ impl Walker {
                     self.steps.push(Step { met: rays, node, ..step });
                 }
                 (Child::Node(node), _) => {
-                    self.go_alone::<L, ALL>(packet, rays, node, around, tally)
+                    self.go_alone::<L, ALL>(packet, rays, node, ground, around, tally)
                 }
             }
         }
@@ -250,10 +250,22 @@ impl Walker {
         packet: usize,
         rays: u16,
         node: u32,
+        ground: &Ground,
         around: &Around,
         tally: &mut Tally,
     ) {
-        let Self { bundle, rest, .. } = self;
-        apart::<L, _>(GoAlone::<ALL> { packet, rays, node, bundle, rest, around, tally });
+        self.rays_of::<L::Sixteen>(packet, ground);
+        let Self { bundle, rest, rays: of_packets, .. } = self;
+        let of_packet = &of_packets[packet];
+        apart::<L, _>(GoAlone::<ALL> {
+            packet,
+            rays,
+            of_packet,
+            node,
+            bundle,
+            rest,
+            around,
+            tally,
+        });
     }
 }
