@@ -8,7 +8,7 @@ use crate::geometry::{TriangleId, Triangles, prefetch};
 /// Triangles of an [`Eight`], and of all that is made of them.
 pub const WIDTH: usize = 8;
 
-/// So many before they are made, triangles are announced.
+/// So many eights before theirs, triangles are announced.
 pub(crate) const AHEAD: usize = 8;
 
 /// The corners of eight triangles: corner, coordinate, triangle.
@@ -26,8 +26,8 @@ impl Eight {
         arithmetic.run(Gather { triangles, ids })
     }
 
-    /// Has memory asked for the corners of triangles of which others will be made soon: there is little to do between, so it
-    /// would be waited for.
+    /// Has memory asked for the corners of triangles of which others will be made soon. What is done with eight triangles is too
+    /// much for the processor to see those of the next, and too little for their corners not to be waited for.
     #[inline(always)]
     pub(crate) fn announce(triangles: &Triangles, ids: &[TriangleId]) {
         for &id in ids {

@@ -18,7 +18,6 @@ pub(super) const TO_FLOOR: f32 = 0.4999;
 
 /// A box in two vectors of four; the fourth coordinates mean nothing.
 #[derive(Clone, Copy, Zeroable)]
-#[repr(C)]
 pub(super) struct Around {
     low: Vec4,
     high: Vec4,
@@ -44,7 +43,7 @@ impl Around {
     /// Along which axis it is longest, and how long.
     #[inline(always)]
     pub fn longest(&self) -> (usize, f32) {
-        let extent = (self.high - self.low).xyz();
+        let extent = self.extent().xyz();
         let axis = extent.max_position();
         (axis, extent[axis])
     }
@@ -70,7 +69,7 @@ impl Around {
     /// Half of its surface; 0 of nothing.
     #[inline(always)]
     pub fn half_area(&self) -> f32 {
-        let extent = (self.high - self.low).max(Vec4::ZERO);
+        let extent = self.extent().max(Vec4::ZERO);
         let sides = extent * extent.yzxw();
         sides.x + sides.y + sides.z
     }
@@ -82,7 +81,6 @@ impl Around {
 
 /// A triangle while its cluster is sought: its box, and its number in bits of the fourth coordinate.
 #[derive(Clone, Copy, Zeroable)]
-#[repr(transparent)]
 pub(super) struct Item(pub Around);
 
 impl Item {

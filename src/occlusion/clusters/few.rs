@@ -165,7 +165,7 @@ fn cheapest_cut(items: &[Item], order: &[u8], sweeps: &mut Sweeps) -> usize {
         right_around.join(&items[usize::from(order[count - number])].0);
         right[count - number] = right_around.extent();
     }
-    // No cut before the first, and none after the last.
+    // No cut before the first, and none after the last; what `right` has there is of another part.
     left[0] = Vec4::INFINITY;
     left[count..count.next_multiple_of(AT_ONCE)].fill(Vec4::INFINITY);
     let (left_clusters, right_clusters) = (&CLUSTERS.0, &CLUSTERS.1[FEW - count..]);
@@ -176,7 +176,8 @@ fn cheapest_cut(items: &[Item], order: &[u8], sweeps: &mut Sweeps) -> usize {
         let left = half_areas(&left[first..]) * Vec4::from_slice(&left_clusters[first..]);
         let right = half_areas(&right[first..]) * Vec4::from_slice(&right_clusters[first..]);
         *costs = left + right;
-        least = costs.min(least);
+        // Not `min`, which on some processors gives the one that is no number.
+        least = Vec4::select(costs.cmplt(least), *costs, least);
     }
     let least = least.min_element();
     if least < f32::INFINITY {
@@ -216,11 +217,12 @@ impl Sweeps {
 #[inline(always)]
 fn half_areas(extents: &[Vec4]) -> Vec4 {
     let sides = Mat4::from_cols(extents[0], extents[1], extents[2], extents[3]).transpose();
-    let [x, y, z] = [sides.x_axis, sides.y_axis, sides.z_axis].map(|side| side.max(Vec4::ZERO));
+    let [x, y, z] = [sides.x_axis, sides.y_axis, sides.z_axis];
     x * y + y * z + z * x
 }
 
-/// How many clusters so many triangles take, and, of [`FEW`], so many less.
+/// How many clusters so many triangles take; and as many as are left of [`FEW`] without so many. Beyond that 1, as nothing times an
+/// infinite surface is no number.
 static CLUSTERS: ([f32; FEW + AT_ONCE], [f32; FEW + AT_ONCE]) = {
     let (mut left, mut right) = ([1.0; FEW + AT_ONCE], [1.0; FEW + AT_ONCE]);
     let mut count = 1;

@@ -8,8 +8,9 @@ use crate::shadow::{
     Combination, Method, Prepared, SelfShadow, VerdictKind, VerdictReport, VerdictSet,
 };
 
-/// Nanoseconds a triangle to group triangles into clusters, of all threads together: when they are the first thing that a program builds, 82
-/// to 136 were seen (EPYC), and 206 where the system had to find memory. What is thought too cheap is built too early, and what it did cost is known only afterwards.
+/// Nanoseconds a triangle to group triangles into clusters, of all threads together: when they are the first thing that a program
+/// builds, 82 to 136 were seen (EPYC), and 206 where the system had to find memory. What is thought too cheap is built too early, and
+/// what it did cost is known only afterwards.
 const CLUSTERS: f64 = 120.0;
 
 /// Nanoseconds a triangle to sort clusters by the directions of a light: a first guess, which what the first light took replaces.

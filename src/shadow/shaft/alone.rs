@@ -47,8 +47,7 @@ pub(super) struct GoAlone<'a, 'b, const ALL: bool> {
     pub packet: usize,
     /// A bit each.
     pub rays: u16,
-    /// All of the packet's.
-    pub of_packet: &'a PacketRays,
+    pub packet_rays: &'a PacketRays,
     pub node: u32,
     pub bundle: &'a mut Bundle,
     /// What is still to be visited.
@@ -62,11 +61,11 @@ impl<const ALL: bool> LanesJob for GoAlone<'_, '_, ALL> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { packet, mut rays, of_packet, node, bundle, rest, around, tally } = self;
+        let Self { packet, mut rays, packet_rays, node, bundle, rest, around, tally } = self;
         while rays != 0 {
             let lane = rays.trailing_zeros() as usize;
             rays &= rays - 1;
-            let shaft = of_packet.shaft(lane % PACKET);
+            let shaft = packet_rays.shaft(lane % PACKET);
             rest.clear();
             rest.push(node);
             'ray: while let Some(node) = rest.pop() {

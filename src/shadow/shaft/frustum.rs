@@ -14,7 +14,8 @@
 //! | a box's plane less the side's, its inverse slope, their product: 3u of at most 2 M | 6 |
 //! | the pad itself, added to sides | 2 |
 //!
-//! Both sides of a comparison err, each by its own plane, and each plane is moved by [`PAD`]: 16.
+//! Both sides of a comparison err, each by its own plane, and each plane is moved by [`PAD`]: 16. Those of a ray alone are moved twice
+//! as far (`rays`).
 //!
 //! Haines, Wallace: Shaft Culling for Efficient Ray-Cast Radiosity. Eurographics Workshop on Rendering 1991.
 
@@ -31,7 +32,7 @@ pub(super) const PAD: f32 = 1.0 / (1 << 20) as f32;
 /// Stands for the inverse of a slope of zero.
 pub(super) const STEEPEST: f32 = 1e30;
 
-/// The shaft of a part of a bundle.
+/// The shaft of a part of a bundle, or of one ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shaft {
     /// Of the upper side by axis: where it is at t = 0, and t for a unit of way.
@@ -94,14 +95,14 @@ impl Shaft {
         self.narrows = matches!(source, Source::Point(_));
     }
 
-    /// That of one ray, from its origin, the inverses of its slopes, where it ends, and how far that may be off.
+    /// That of one ray, of which the inverses of the slopes are known; its planes are moved by `pad`.
     #[inline(always)]
-    pub fn of_ray(origin: Vec3, slopes: [f32; 3], end: f32, pad: f32) -> Self {
+    pub fn of_ray(origin: Vec3, inverses: [f32; 3], end: f32, pad: f32) -> Self {
         Self {
             upper: (origin + pad).into(),
-            upper_inverse: slopes.into(),
+            upper_inverse: inverses.into(),
             lower: (origin - pad).into(),
-            lower_inverse: slopes.into(),
+            lower_inverse: inverses.into(),
             end,
             extent: 0.0,
             narrows: false,

@@ -255,12 +255,12 @@ impl Walker {
         tally: &mut Tally,
     ) {
         self.rays_of::<L::Sixteen>(packet, ground);
-        let Self { bundle, rest, rays: of_packets, .. } = self;
-        let of_packet = &of_packets[packet];
+        let Self { bundle, rest, rays: all_rays, .. } = self;
+        let packet_rays = &all_rays[packet];
         apart::<L, _>(GoAlone::<ALL> {
             packet,
             rays,
-            of_packet,
+            packet_rays,
             node,
             bundle,
             rest,
