@@ -66,7 +66,9 @@ fn build_by_numbers(
     let arithmetic = Available::newest();
     let cluster = |run: Range<u32>| {
         let soon = run.start as usize + AHEAD * WIDTH;
-        Eight::announce(triangles, sorted.get(soon..soon + run.len()).unwrap_or_default());
+        if let Some(soon) = sorted.get(soon..soon + run.len()) {
+            Eight::announce(triangles, soon);
+        }
         let run = &sorted[run.start as usize..run.end as usize];
         let ids = std::array::from_fn(|lane| run[lane.min(run.len() - 1)]);
         Cluster { corners: Eight::new(triangles, &ids, arithmetic), ids }

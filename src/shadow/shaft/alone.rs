@@ -9,7 +9,7 @@ use crate::exact::Exact;
 use crate::geometry::Ray;
 use crate::geometry::intersect::RayLanes;
 use crate::geometry::lanes::{Lanes, LanesJob};
-use crate::occlusion::{Cluster, Tally, WIDTH};
+use crate::occlusion::{Cluster, Node, Tally, WIDTH};
 
 /// A ray of a packet by itself.
 pub(super) struct Alone<'a, L: Lanes> {
@@ -40,6 +40,26 @@ impl<'a, L: Lanes> Alone<'a, L> {
         };
         cluster.test_each::<Exact, L>(self.ray, &self.lanes, around.triangles, hit)
     }
+
+    /// Tests the triangles of some clusters of a node, a bit each, likewise.
+    #[inline(always)]
+    fn test_some<const ALL: bool>(
+        &self,
+        bundle: &mut Bundle,
+        node: &Node,
+        mut clusters: u32,
+        around: &Around,
+        tally: &mut Tally,
+    ) -> ControlFlow<()> {
+        while clusters != 0 {
+            let slot = clusters.trailing_zeros() as usize;
+            clusters &= clusters - 1;
+            tally.triangle_tests += WIDTH as u64;
+            let cluster = &around.clusters.all()[node.number(slot) as usize];
+            self.test::<ALL>(bundle, cluster, around)?;
+        }
+        Continue(())
+    }
 }
 
 /// Some rays of a packet visit a node, and what is below it, one by one.
@@ -68,23 +88,17 @@ impl<const ALL: bool> LanesJob for GoAlone<'_, '_, ALL> {
             let shaft = packet_rays.shaft(lane % PACKET);
             rest.clear();
             rest.push(node);
-            'ray: while let Some(node) = rest.pop() {
+            while let Some(node) = rest.pop() {
                 tally.cells += 1;
                 let node = &around.clusters.nodes()[node as usize];
                 let met = shaft.meets::<L>(node).met;
-                let mut clusters = met & node.clusters();
+                let clusters = met & node.clusters();
                 let mut nodes = met & !clusters;
                 if clusters != 0 {
                     // Not before: many rays come to no cluster, and this reads the query.
                     let alone = Alone::<L>::new(around, packet, lane);
-                    while clusters != 0 {
-                        let slot = clusters.trailing_zeros() as usize;
-                        clusters &= clusters - 1;
-                        tally.triangle_tests += WIDTH as u64;
-                        let cluster = &around.clusters.all()[node.number(slot) as usize];
-                        if alone.test::<ALL>(bundle, cluster, around).is_break() {
-                            break 'ray;
-                        }
+                    if alone.test_some::<ALL>(bundle, node, clusters, around, tally).is_break() {
+                        break;
                     }
                 }
                 while nodes != 0 {

@@ -178,9 +178,8 @@ mod tests {
         let origins = prop::collection::vec(near(), PACKET);
         let ways = prop::collection::vec(0f32..=1.0, PACKET);
         (point(1.0), point(1.0), -2..7i32, -3..3i32, origins, ways, near(), any::<bool>()).prop_map(
-            |(light, centre, far, size, origins, ways, direction, is_point)| {
+            |(place, centre, far, size, origins, ways, direction, is_point)| {
                 let (far, size) = (10f32.powi(far), 10f32.powi(size));
-                let place = light;
                 let origins = origins.into_iter().map(|offset| place + size * offset).collect();
                 let source = if is_point || direction == Vec3::ZERO {
                     Source::Point(place)

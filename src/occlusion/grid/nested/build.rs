@@ -336,8 +336,9 @@ impl<'a> Sorter<'a> {
         let arithmetic = Available::newest();
         let (ids, _) = grid.order.as_chunks::<WIDTH>();
         let eight = |number: usize| {
-            let soon = ids.get(number + AHEAD).map_or(&[][..], |ids| ids);
-            Eight::announce(self.triangles, soon);
+            if let Some(soon) = ids.get(number + AHEAD) {
+                Eight::announce(self.triangles, soon);
+            }
             Eight::new(self.triangles, &ids[number], arithmetic)
         };
         grid.eights = vec_with_room(ids.len());
